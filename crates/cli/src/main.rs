@@ -1,0 +1,2 @@
+//! robotc
+fn main() {}
