@@ -10,13 +10,17 @@ pub mod ids;
 pub mod ik;
 pub mod model;
 pub mod rng;
+pub mod robot;
 pub mod system;
+pub mod task;
 
 pub use diag::{Diagnostic, Diagnostics, Severity, Sources, Span};
 pub use ids::{BodyIdx, DofIdx, JointIdx, LinkIdx, TypedVec};
 pub use model::{Calibration, Configuration, Kinematics, LinkPoses, RobotModel, SerialChain};
 pub use rng::Seed;
+pub use robot::{Arm, Gripper, Robot};
 pub use system::System;
+pub use task::Task;
 
 /// Double-precision rigid transform, the only pose type of public signatures.
 pub type Pose = nalgebra::Isometry3<f64>;

@@ -1,0 +1,91 @@
+//! A task as the compiler sees it: what stands where, and what shall happen.
+
+use std::sync::Arc;
+
+use crate::Pose;
+use crate::model::{Configuration, Geometry};
+use crate::robot::Robot;
+
+/// A checked task specification.
+#[derive(Debug, Clone)]
+pub struct Task {
+    /// Name of the task.
+    pub name: String,
+    /// The robot that does it.
+    pub robot: Arc<Robot>,
+    /// Position in [`Robot::arms`] of the arm that does it.
+    pub arm: usize,
+    /// `world_from_root`: where the robot stands.
+    pub world_from_robot: Pose,
+    /// Where the robot starts.
+    pub start: Configuration,
+    /// Things that can be moved, in specification order.
+    pub objects: Vec<Object>,
+    /// Things that cannot.
+    pub obstacles: Vec<Obstacle>,
+    /// What shall happen, in order.
+    pub goals: Vec<Goal>,
+    /// Root of all randomness of the task.
+    pub seed: u64,
+}
+
+/// A thing that can be grasped and moved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Object {
+    /// Unique among objects and obstacles.
+    pub name: String,
+    /// Its shape, shared by objects made from the same file.
+    pub geometry: Arc<Vec<Geometry>>,
+    /// Kilograms.
+    pub mass: f64,
+    /// Coulomb friction between object and fingers.
+    pub friction: f64,
+    /// `world_from_object` at the start.
+    pub world_from_object: Pose,
+}
+
+/// A thing that stays where it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Obstacle {
+    /// Unique among objects and obstacles.
+    pub name: String,
+    /// Its shape.
+    pub geometry: Arc<Vec<Geometry>>,
+    /// `world_from_obstacle`.
+    pub world_from_obstacle: Pose,
+}
+
+/// Something that shall happen.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Goal {
+    /// Pick an object up and put it down.
+    Place {
+        /// Position in [`Task::objects`].
+        object: usize,
+        /// Where it may end up.
+        destination: Destination,
+        /// Largest tilt of the object's z axis against the world's while carried, radians, if limited.
+        keep_upright: Option<f64>,
+    },
+}
+
+/// Where an object may be put.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Destination {
+    /// One pose, or the same one turned about the world's z axis.
+    Pose {
+        /// `world_from_object`.
+        world_from_object: Pose,
+        /// Whether any turn about the vertical through the object's origin is as good.
+        any_yaw: bool,
+    },
+    /// Anywhere upright in a rectangle on a surface.
+    Region {
+        /// Centre of the rectangle; its z is the height of the surface.
+        world_from_region: Pose,
+        /// Full edge lengths along the region's x and y, metres. The object's origin is put inside.
+        size: [f64; 2],
+        /// Height of the object's origin above the surface when it stands on it.
+        origin_height: f64,
+    },
+}
