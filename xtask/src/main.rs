@@ -1,2 +1,18 @@
-//! robotc
-fn main() {}
+//! Development tasks: `cargo xtask NAME`. One file per task, one line each in [`TASKS`].
+
+mod test;
+
+/// A task: what it is called, what it does, and its code (arguments after the name are passed on).
+type Task = (&'static str, &'static str, fn(&[String]) -> anyhow::Result<()>);
+
+const TASKS: &[Task] = &[("test", "all tests: format, lints, Rust, Python, documentation", test::run)];
+
+fn main() -> anyhow::Result<()> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let name = args.first().map_or("", String::as_str);
+    if let Some((_, _, task)) = TASKS.iter().find(|(task, _, _)| *task == name) {
+        return task(&args[1..]);
+    }
+    let list: Vec<String> = TASKS.iter().map(|(name, what, _)| format!("  {name:10} {what}")).collect();
+    anyhow::bail!("no task `{name}`; tasks are:\n{}", list.join("\n"))
+}
