@@ -1,11 +1,15 @@
 //! Development tasks: `cargo xtask NAME`. One file per task, one line each in [`TASKS`].
 
 mod test;
+mod tidy;
 
 /// A task: what it is called, what it does, and its code (arguments after the name are passed on).
 type Task = (&'static str, &'static str, fn(&[String]) -> anyhow::Result<()>);
 
-const TASKS: &[Task] = &[("test", "all tests: format, lints, Rust, Python, documentation", test::run)];
+const TASKS: &[Task] = &[
+    ("test", "all tests: format, lints, Rust, Python", test::run),
+    ("tidy", "architecture invariants that text can show", tidy::run),
+];
 
 fn main() -> anyhow::Result<()> {
     let args: Vec<String> = std::env::args().skip(1).collect();

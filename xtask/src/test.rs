@@ -14,6 +14,7 @@ pub(crate) fn run(_args: &[String]) -> anyhow::Result<()> {
         ("tests", &["cargo", "test", "--workspace", "--locked"]),
     ];
     let mut times = Vec::new();
+    crate::tidy::run(&[])?;
     for (name, command) in steps {
         let start = Instant::now();
         println!("== {name}: {}", command.join(" "));
