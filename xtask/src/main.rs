@@ -3,6 +3,8 @@
 mod test;
 mod tidy;
 
+use std::process::ExitCode;
+
 /// A task: what it is called, what it does, and its code (arguments after the name are passed on).
 type Task = (&'static str, &'static str, fn(&[String]) -> anyhow::Result<()>);
 
@@ -11,8 +13,18 @@ const TASKS: &[Task] = &[
     ("tidy", "architecture invariants that text can show", tidy::run),
 ];
 
-fn main() -> anyhow::Result<()> {
+fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
+    match dispatch(&args) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn dispatch(args: &[String]) -> anyhow::Result<()> {
     let name = args.first().map_or("", String::as_str);
     if let Some((_, _, task)) = TASKS.iter().find(|(task, _, _)| *task == name) {
         return task(&args[1..]);
