@@ -13,6 +13,7 @@ pub mod rng;
 pub mod robot;
 pub mod system;
 pub mod task;
+pub mod trajectory;
 
 pub use diag::{Diagnostic, Diagnostics, Severity, Sources, Span};
 pub use ids::{BodyIdx, DofIdx, JointIdx, LinkIdx, TypedVec};
@@ -21,6 +22,7 @@ pub use rng::Seed;
 pub use robot::{Arm, Gripper, Robot};
 pub use system::System;
 pub use task::Task;
+pub use trajectory::Trajectory;
 
 /// Double-precision rigid transform, the only pose type of public signatures.
 pub type Pose = nalgebra::Isometry3<f64>;
