@@ -11,6 +11,7 @@ pub mod ik;
 pub mod model;
 pub mod rng;
 pub mod robot;
+pub mod so3;
 pub mod system;
 pub mod task;
 pub mod trajectory;
