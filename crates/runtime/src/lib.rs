@@ -1,1 +1,3 @@
-//! placeholder
+//! Loads a compiled knowledge base, plans, executes and records, with no generator linked.
+
+pub mod record;
