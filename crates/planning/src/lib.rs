@@ -1,6 +1,21 @@
 //! Motion, grasp and manipulation planners.
 //!
+//! Planners work on a [`Space`] and an [`EdgeChecker`] and never see a robot.
 
+pub mod budget;
+pub mod constraint;
+pub mod edge;
+pub mod goal;
 pub mod grasp;
+pub mod rrt;
+pub mod space;
+#[cfg(test)]
+mod toy;
 
+pub use budget::{Budget, Interrupt};
+pub use constraint::Constraint;
+pub use edge::{Blocked, EdgeChecker, Obstruction};
+pub use goal::{FixedGoals, GoalDraw, GoalSampler};
 pub use grasp::{Contact, Grasp, GraspSet};
+pub use rrt::{RrtConnect, RrtFailure, RrtOptions, RrtSolution};
+pub use space::{Axis, Space};
