@@ -328,7 +328,8 @@ mod tests {
     #[test]
     fn goes_round_a_wall_with_every_seed() {
         for seed in 0..50 {
-            let mut toy = Toy { padding: 0.025, ..Toy::wall(0.05) };
+            let mut toy = Toy::wall(0.05);
+            toy.padding = 0.025;
             let solution = run(&mut toy, &mut FixedGoals::new(vec![vec![9.0, 1.0]]), seed).unwrap();
             assert_eq!(solution.path[0], [1.0, 1.0]);
             assert_eq!(solution.path[solution.path.len() - 1], [9.0, 1.0]);
