@@ -12,6 +12,7 @@ pub mod model;
 pub mod rng;
 pub mod robot;
 pub mod so3;
+pub mod spec;
 pub mod system;
 pub mod task;
 pub mod trajectory;

@@ -37,6 +37,79 @@ pub const CODES: &[CodeInfo] = &[
         "file cannot be read",
         "The file exists but the operating system would not read it, or it is not UTF-8 text where text is needed.",
     ),
+    entry(
+        "R0101",
+        "not TOML",
+        "The text breaks TOML's syntax at this place: a missing quote or bracket, a key without a value, a key or table \
+         defined twice. Other findings of the same file are reported as far as the rest can be read.",
+    ),
+    entry(
+        "R0102",
+        "unknown key",
+        "No part of robotc reads this key, so it is most likely misspelt or stands in the wrong table. Keys are never \
+         ignored. `robotc schema robot` and `robotc schema task` print all keys.",
+    ),
+    entry(
+        "R0103",
+        "missing key",
+        "A table lacks a key that has no default. The place shown is the table; write the key below its header.",
+    ),
+    entry(
+        "R0104",
+        "wrong kind of value",
+        "The value is of another kind than the key takes: a text where a number is needed, one value where a list is \
+         needed. Numbers are written without quotes, texts with them.",
+    ),
+    entry(
+        "R0105",
+        "number out of range",
+        "The number is outside of the range that makes sense for this key, or is `nan` or `inf`. Lengths are metres, \
+         angles radians, masses kilograms: a value a thousand or 57 times too large is often a matter of units.",
+    ),
+    entry(
+        "R0106",
+        "wrong number of values",
+        "The list is shorter or longer than this key takes, such as two numbers where x, y and z are needed.",
+    ),
+    entry(
+        "R0107",
+        "name used twice",
+        "Two things of one kind have the same name, so a reference by name could mean either. Rename one.",
+    ),
+    entry(
+        "R0108",
+        "unknown word",
+        "The key takes one of a few words, and this is none of them. The words allowed are listed with the finding.",
+    ),
+    entry(
+        "R0109",
+        "one of several keys",
+        "Of a group of keys exactly one must be written, such as the shape of an object: `mesh`, `box`, `cylinder`, \
+         `capsule` or `sphere`. Here there is none, or more than one.",
+    ),
+    entry(
+        "R0110",
+        "key without a meaning here",
+        "The key is known, but nothing reads it beside what else the table says, such as `units` for an object that is \
+         not a mesh. Remove it, or add the key it belongs to.",
+    ),
+    entry(
+        "R0111",
+        "malformed text",
+        "The text does not have the form that the key asks for. Names consist of letters, digits, `_`, `-` and `.`, because \
+         they turn up in commands, file names and reports.",
+    ),
+    entry(
+        "R0113",
+        "unknown artefact kind",
+        "Tables below `parameters` are named after the kinds of artefacts that the compiler makes; `robotc graph` lists \
+         them.",
+    ),
+    entry(
+        "R0114",
+        "unknown parameter",
+        "The artefact kind has no parameter of this name. `robotc schema robot` prints all parameters of all kinds.",
+    ),
 ];
 
 #[cfg(test)]

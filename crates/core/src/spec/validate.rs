@@ -1,0 +1,463 @@
+//! Checks a tree of values against a schema and finds everything that is wrong with it.
+
+use super::document::{Entry, Node, Table, Value};
+use super::parameters::{KindParameters, Parameter, ParameterKind, ParameterTable};
+use super::schema::{Key, Kind, Length, Presence, Range, Rule, TableSchema, Text};
+use crate::diag::{Diagnostic, Diagnostics, Span, nearest};
+
+/// All findings about `table`, in no particular order. `place` is where missing keys are reported.
+pub(super) fn validate(
+    table: &Table,
+    place: Span,
+    schema: &TableSchema,
+    parameters: &ParameterTable,
+    diagnostics: &mut Diagnostics,
+) {
+    Checker { parameters, diagnostics }.table(table, place, schema, "");
+}
+
+struct Checker<'a> {
+    parameters: &'a ParameterTable,
+    diagnostics: &'a mut Diagnostics,
+}
+
+impl Checker<'_> {
+    /// `path` names the table in messages; empty for the whole file.
+    fn table(&mut self, table: &Table, place: Span, schema: &TableSchema, path: &str) {
+        for entry in &table.entries {
+            match schema.key(&entry.key) {
+                Some(key) => self.node(&entry.node, key.kind, &join(path, &entry.key)),
+                None => {
+                    let known = schema.keys.iter().map(|k| k.name);
+                    self.unknown("R0102", "key", entry, known, &listed(schema.keys.iter().map(|k| k.name)));
+                }
+            }
+        }
+        let missing: Vec<&Key> = schema
+            .keys
+            .iter()
+            .filter(|key| key.presence == Presence::Required && table.get(key.name).is_none())
+            .collect();
+        for key in missing {
+            self.missing(key, place, path);
+        }
+        for rule in schema.rules {
+            self.rule(table, place, schema, rule, path);
+        }
+    }
+
+    fn missing(&mut self, key: &Key, place: Span, path: &str) {
+        let what = if path.is_empty() { "this file".to_owned() } else { format!("`{path}`") };
+        self.diagnostics.push(
+            Diagnostic::error("R0103", format!("{what} lacks the key `{}`", key.name))
+                .at(place, format!("`{}` is missing", key.name))
+                .expected(format!("`{}`: {}", key.name, describe(key.kind)))
+                .hint(first_sentence(key.doc)),
+        );
+    }
+
+    fn rule(&mut self, table: &Table, place: Span, schema: &TableSchema, rule: &Rule, path: &str) {
+        match *rule {
+            Rule::ExactlyOne(keys) => {
+                let present: Vec<&Entry> = keys.iter().filter_map(|key| table.entry(key)).collect();
+                let expected = format!("exactly one of {}", listed(keys.iter().copied()));
+                match present[..] {
+                    [_] => {}
+                    [] => self.diagnostics.push(
+                        Diagnostic::error(
+                            "R0109",
+                            format!("`{path}` says none of {}", listed(keys.iter().copied())),
+                        )
+                        .at(place, "one is needed here")
+                        .expected(expected),
+                    ),
+                    [first, ref rest @ ..] => {
+                        for entry in rest {
+                            self.diagnostics.push(
+                                Diagnostic::error(
+                                    "R0109",
+                                    format!("`{path}` says both `{}` and `{}`", first.key, entry.key),
+                                )
+                                .at(entry.key_span, "one too many")
+                                .expected(expected.clone()),
+                            );
+                        }
+                    }
+                }
+            }
+            Rule::OnlyWith { keys, with } => {
+                if table.get(with).is_none() {
+                    for entry in keys.iter().filter_map(|key| table.entry(key)) {
+                        self.without_effect(entry, format!("beside `{with}`"));
+                    }
+                }
+            }
+            Rule::Goes { key, value, then } => {
+                let applies = table.get(key).and_then(Node::text) == Some(value);
+                match (applies, table.entry(then), schema.key(then)) {
+                    (true, None, Some(needed)) => self.missing(needed, place, path),
+                    (false, Some(entry), _) => {
+                        self.without_effect(entry, format!("with `{key} = \"{value}\"`"))
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+
+    fn without_effect(&mut self, entry: &Entry, when: String) {
+        self.diagnostics.push(
+            Diagnostic::error("R0110", format!("`{}` has no meaning here", entry.key))
+                .at(entry.key_span, "nothing would read this")
+                .expected(format!("`{}` only {when}", entry.key)),
+        );
+    }
+
+    fn node(&mut self, node: &Node, kind: Kind, path: &str) {
+        match (kind, &node.value) {
+            (Kind::Bool, Value::Bool(_)) => {}
+            (Kind::Integer(min, max), Value::Integer(i)) => {
+                if !(min..=max).contains(i) {
+                    self.out_of_range(node, path, i, &integers(min, max));
+                }
+            }
+            (Kind::Number(range), Value::Integer(_) | Value::Float(_)) => self.number(node, range, path),
+            (Kind::Text(format), Value::Text(text)) => self.text(node, format, text, path),
+            (Kind::Choice(words), Value::Text(text)) => self.word(node, words, text, path),
+            (Kind::List(item, length), Value::List(items)) => self.list(node, items, *item, length, path),
+            (Kind::Table(schema), Value::Table(table)) => self.table(table, node.span, schema, path),
+            (Kind::Tables(schema, unique), Value::List(items)) => {
+                for item in items {
+                    match &item.value {
+                        Value::Table(table) => self.table(table, item.span, schema, path),
+                        _ => self.wrong_kind(item, "a table", path),
+                    }
+                }
+                if let Some(key) = unique {
+                    self.unique(items, key, path);
+                }
+            }
+            (Kind::Map(_, value), Value::Table(table)) => {
+                for entry in &table.entries {
+                    self.node(&entry.node, *value, &join(path, &entry.key));
+                }
+            }
+            (Kind::Parameters, Value::Table(table)) => self.parameter_kinds(table),
+            _ => self.wrong_kind(node, &describe(kind), path),
+        }
+    }
+
+    fn number(&mut self, node: &Node, range: Range, path: &str) {
+        let Some(x) = node.number() else {
+            self.diagnostics.push(
+                Diagnostic::error("R0105", format!("`{path}` is not a finite number"))
+                    .at(node.span, "not finite")
+                    .expected(describe(Kind::Number(range))),
+            );
+            return;
+        };
+        if !range.contains(x) {
+            self.out_of_range(node, path, x, &describe(Kind::Number(range)));
+        }
+    }
+
+    fn text(&mut self, node: &Node, format: Text, text: &str, path: &str) {
+        if format.accepts(text) {
+            return;
+        }
+        let hint = match format {
+            Text::Name => "letters, digits, `_`, `-` and `.`, and no space",
+            Text::Colour => "six hexadecimal digits, such as \"#c94f3d\"",
+            _ => "the text must not be empty",
+        };
+        self.diagnostics.push(
+            Diagnostic::error("R0111", format!("`{path}` is {text:?}"))
+                .at(node.span, format!("not {}", format.describe()))
+                .expected(format.describe())
+                .hint(hint),
+        );
+    }
+
+    fn word(&mut self, node: &Node, words: &[&'static str], text: &str, path: &str) {
+        if words.contains(&text) {
+            return;
+        }
+        let mut diagnostic = Diagnostic::error("R0108", format!("`{path}` is {text:?}"))
+            .at(node.span, "not one of the words")
+            .expected(format!("one of {}", quoted(words)));
+        if let Some(near) = nearest(text, words.iter().copied()) {
+            diagnostic = diagnostic.hint(format!("did you mean \"{near}\"?"));
+        }
+        self.diagnostics.push(diagnostic);
+    }
+
+    fn list(&mut self, node: &Node, items: &[Node], item: Kind, length: Length, path: &str) {
+        if !length.contains(items.len()) {
+            let found = count(items.len(), "value");
+            self.diagnostics.push(
+                Diagnostic::error("R0106", format!("`{path}` has {found}"))
+                    .at(node.span, found)
+                    .expected(describe_list(item, length)),
+            );
+        }
+        for (i, value) in items.iter().enumerate() {
+            self.node(value, item, &format!("{path}[{i}]"));
+        }
+    }
+
+    fn unique(&mut self, items: &[Node], key: &str, path: &str) {
+        let named: Vec<(&str, Span)> =
+            items.iter().filter_map(Node::table).filter_map(|table| table.text(key)).collect();
+        for (i, (name, place)) in named.iter().enumerate() {
+            if named[..i].iter().any(|(earlier, _)| earlier == name) {
+                self.diagnostics.push(
+                    Diagnostic::error("R0107", format!("two `{path}` are called \"{name}\""))
+                        .at(*place, "used before")
+                        .expected(format!("a `{key}` of its own for each `{path}`")),
+                );
+            }
+        }
+    }
+
+    fn parameter_kinds(&mut self, table: &Table) {
+        for entry in &table.entries {
+            let Some(kind) = self.parameters.kind(&entry.key).copied() else {
+                let names: Vec<&str> = self.parameters.kinds.iter().map(|k| k.kind).collect();
+                let expected = listed(names.iter().copied());
+                self.unknown("R0113", "artefact kind", entry, names, &expected);
+                continue;
+            };
+            let path = format!("parameters.{}", entry.key);
+            match &entry.node.value {
+                Value::Table(values) => self.parameters_of(values, &kind, &path),
+                _ => self.wrong_kind(&entry.node, "a table", &path),
+            }
+        }
+    }
+
+    fn parameters_of(&mut self, values: &Table, kind: &KindParameters, path: &str) {
+        for entry in &values.entries {
+            match kind.parameter(&entry.key) {
+                Some(parameter) => {
+                    self.node(&entry.node, value_kind(parameter), &join(path, &entry.key));
+                }
+                None => {
+                    let names: Vec<&str> = kind.parameters.iter().map(|p| p.name).collect();
+                    let expected = listed(names.iter().copied());
+                    self.unknown("R0114", "parameter", entry, names, &expected);
+                }
+            }
+        }
+    }
+
+    fn unknown<'k>(
+        &mut self,
+        code: &'static str,
+        what: &str,
+        entry: &Entry,
+        known: impl IntoIterator<Item = &'k str>,
+        all: &str,
+    ) {
+        let mut diagnostic = Diagnostic::error(code, format!("there is no {what} `{}` here", entry.key))
+            .at(entry.key_span, format!("unknown {what}"))
+            .expected(if all.is_empty() { "none".to_owned() } else { format!("one of {all}") });
+        if let Some(near) = nearest(&entry.key, known) {
+            diagnostic = diagnostic.hint(format!("did you mean `{near}`?"));
+        }
+        self.diagnostics.push(diagnostic);
+    }
+
+    fn wrong_kind(&mut self, node: &Node, expected: &str, path: &str) {
+        self.diagnostics.push(
+            Diagnostic::error("R0104", format!("`{path}` is {}", node.kind()))
+                .at(node.span, format!("this is {}", node.kind()))
+                .expected(expected),
+        );
+    }
+
+    fn out_of_range(&mut self, node: &Node, path: &str, value: impl std::fmt::Display, expected: &str) {
+        self.diagnostics.push(
+            Diagnostic::error("R0105", format!("`{path}` is {value}"))
+                .at(node.span, "out of range")
+                .expected(expected),
+        );
+    }
+}
+
+/// The kind of value that a parameter takes.
+pub(super) fn value_kind(parameter: &Parameter) -> Kind {
+    match parameter.kind {
+        ParameterKind::Number(range) => Kind::Number(range),
+        ParameterKind::Integer(min, max) => Kind::Integer(min, max),
+        ParameterKind::Text(words) => Kind::Choice(words),
+        ParameterKind::Bool => Kind::Bool,
+    }
+}
+
+/// What is expected, in words.
+pub(super) fn describe(kind: Kind) -> String {
+    match kind {
+        Kind::Bool => "true or false".to_owned(),
+        Kind::Integer(min, max) => integers(min, max),
+        Kind::Number(range) => match range.describe() {
+            None => "a finite number".to_owned(),
+            Some(words) => format!("a number {words}"),
+        },
+        Kind::Text(text) => text.describe().to_owned(),
+        Kind::Choice(words) => format!("one of {}", quoted(words)),
+        Kind::List(item, length) => describe_list(*item, length),
+        Kind::Table(_) => "a table".to_owned(),
+        Kind::Tables(..) => "an array of tables".to_owned(),
+        Kind::Map(key, value) => format!("a table from {} to {}", key.describe(), describe(*value)),
+        Kind::Parameters => "a table for each artefact kind".to_owned(),
+    }
+}
+
+fn describe_list(item: Kind, length: Length) -> String {
+    let items = match item {
+        Kind::Number(range) => match range.describe() {
+            None => "finite numbers".to_owned(),
+            Some(words) => format!("numbers {words}"),
+        },
+        Kind::Integer(..) => format!("values, each {}", describe(item)),
+        Kind::Text(text) => {
+            format!("{}s", text.describe().trim_start_matches("a ").trim_start_matches("an "))
+        }
+        _ => format!("values, each {}", describe(item)),
+    };
+    match length {
+        Length::Any => format!("a list of {items}"),
+        Length::Exactly(n) => format!("a list of {n} {items}"),
+        Length::AtLeast(n) => format!("a list of {n} or more {items}"),
+    }
+}
+
+fn integers(min: i64, max: i64) -> String {
+    match (min, max) {
+        _ if min == max => format!("the integer {min}"),
+        (min, i64::MAX) => format!("an integer from {min}"),
+        _ => format!("an integer from {min} to {max}"),
+    }
+}
+
+/// `n` things, in the singular or plural.
+pub(super) fn count(n: usize, thing: &str) -> String {
+    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
+}
+
+/// Words in back quotes, separated by commas.
+pub(super) fn listed<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    words.into_iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
+}
+
+fn quoted(words: &[&str]) -> String {
+    words.iter().map(|word| format!("{word:?}")).collect::<Vec<_>>().join(", ")
+}
+
+fn join(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+}
+
+fn first_sentence(doc: &str) -> String {
+    let end = doc.find(". ").or_else(|| doc.rfind('.')).unwrap_or(doc.len());
+    doc[..end].to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::SpecKind;
+    use super::super::file::open;
+    use super::super::parameters::ParameterDefault;
+    use super::*;
+    use crate::diag::Sources;
+    use crate::system::MemorySystem;
+    use std::path::Path;
+
+    const GRASP: &[Parameter] = &[
+        Parameter {
+            name: "rolls",
+            kind: ParameterKind::Integer(1, 64),
+            default: ParameterDefault::Integer(8),
+            unit: "",
+            doc: "Turns about the approach.",
+        },
+        Parameter {
+            name: "standoff",
+            kind: ParameterKind::Number(Range::NON_NEGATIVE),
+            default: ParameterDefault::Automatic("a tenth of the finger length"),
+            unit: "m",
+            doc: "Distance kept.",
+        },
+    ];
+
+    fn table() -> ParameterTable {
+        let kind = KindParameters { kind: "grasp_set", doc: "Grasps.", parameters: GRASP };
+        ParameterTable { kinds: vec![kind] }
+    }
+
+    fn findings(kind: SpecKind, text: &str) -> String {
+        let mut system = MemorySystem::new();
+        system.insert("a.toml", text);
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        open(&system, &mut sources, Path::new("a.toml"), None, kind, &table(), &mut diagnostics);
+        diagnostics.to_plain_text(&sources)
+    }
+
+    #[test]
+    fn all_findings_of_a_file_come_at_once() {
+        let text = "format = 1\nname = \"a b\"\ndescripton = \"a.urdf\"\n[base]\nkind = \"planer\"\n";
+        let found = findings(SpecKind::Robot, text);
+        let codes: Vec<&str> = found.lines().map(|l| &l[l.find('[').unwrap() + 1..][..5]).collect();
+        assert_eq!(codes, ["R0103", "R0111", "R0102", "R0108"], "{found}");
+        assert!(found.contains("a.toml:3:1: error[R0102]: there is no key `descripton` here"), "{found}");
+        assert!(found.contains("did you mean `description`?"), "{found}");
+        assert!(found.contains("did you mean \"planar\"?"), "{found}");
+    }
+
+    #[test]
+    fn parameters_are_checked_against_their_declaration() {
+        let head = "format = 1\nname = \"t\"\nrobot = \"r\"\n[[goal]]\nplace = \"o\"\nat = {}\n[parameters.";
+        assert_eq!(findings(SpecKind::Task, &format!("{head}grasp_set]\nrolls = 4\nstandoff = 0\n")), "");
+        let wrong =
+            findings(SpecKind::Task, &format!("{head}grasp_set]\nroll = 4\nstandoff = -1\nrolls = 4.0\n"));
+        assert!(wrong.contains("8:1: error[R0114]") && wrong.contains("did you mean `rolls`?"), "{wrong}");
+        assert!(wrong.contains("9:12: error[R0105]: `parameters.grasp_set.standoff` is -1"), "{wrong}");
+        assert!(wrong.contains("10:9: error[R0104]: `parameters.grasp_set.rolls` is a number"), "{wrong}");
+        let wrong = findings(SpecKind::Task, &format!("{head}grasp]\n"));
+        assert!(wrong.contains("7:13: error[R0113]"), "{wrong}");
+    }
+
+    #[test]
+    fn a_syntax_error_hides_only_what_it_made_up() {
+        let found = findings(SpecKind::Task, "format = \nnam = \"t\"\n");
+        assert_eq!(found.lines().count(), 2, "{found}");
+        assert!(found.contains("1:10: error[R0101]") && found.contains("2:1: error[R0102]"), "{found}");
+    }
+
+    #[test]
+    fn defaults_of_the_schemas_satisfy_them() {
+        fn visit(schema: &'static TableSchema, visited: &mut usize) {
+            for key in schema.keys {
+                if let Presence::Default(text) = key.presence {
+                    let mut sources = Sources::new();
+                    let file = sources.add("default", format!("value = {text}"));
+                    let mut diagnostics = Diagnostics::new();
+                    let tree = super::super::document::parse(&sources, file, &mut diagnostics);
+                    let parameters = table();
+                    let mut checker = Checker { parameters: &parameters, diagnostics: &mut diagnostics };
+                    checker.node(&tree.entries[0].node, key.kind, key.name);
+                    assert_eq!(diagnostics.to_plain_text(&sources), "");
+                    *visited += 1;
+                }
+                match key.kind {
+                    Kind::Table(below) | Kind::Tables(below, _) => visit(below, visited),
+                    _ => {}
+                }
+            }
+        }
+        let mut visited = 0;
+        visit(SpecKind::Robot.schema(), &mut visited);
+        visit(SpecKind::Task.schema(), &mut visited);
+        assert!(visited > 10);
+    }
+}
