@@ -6,6 +6,7 @@
 //! Lengths are metres and angles radians unless an identifier says otherwise.
 
 pub mod diag;
+pub mod geom;
 pub mod ids;
 pub mod ik;
 pub mod model;

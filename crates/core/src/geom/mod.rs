@@ -1,0 +1,24 @@
+//! Convex parts, boxes, distances and rays: the geometry that collision checks, grasps and link statistics share.
+//!
+//! A shape is a list of convex polytopes ([`ConvexParts`]) that together cover it. Queries take poses as
+//! `a_from_b` or `world_from_part`, in metres. This is the only module that names the geometry library it is built
+//! with; public signatures use nalgebra's types and our own.
+
+mod aabb;
+mod bvh;
+mod gjk;
+mod hull;
+mod mesh_index;
+mod part;
+mod parts;
+mod penetration;
+mod primitive;
+mod query;
+
+pub use aabb::Aabb;
+pub use hull::HullError;
+pub use mesh_index::{MeshIndex, NearestPoint, RayHit};
+pub use part::{ConvexPart, PartError, Plane};
+pub use parts::ConvexParts;
+pub use primitive::{box_part, capsule_part, cylinder_part, sphere_part};
+pub use query::{Contact, Distance, contact, distance, intersects, within};
