@@ -8,7 +8,9 @@ pub mod edge;
 pub mod goal;
 pub mod grasp;
 pub mod rrt;
+pub mod smooth;
 pub mod space;
+pub mod timing;
 #[cfg(test)]
 mod toy;
 
@@ -18,4 +20,6 @@ pub use edge::{Blocked, EdgeChecker, Obstruction};
 pub use goal::{FixedGoals, GoalDraw, GoalSampler};
 pub use grasp::{Contact, Grasp, GraspSet};
 pub use rrt::{RrtConnect, RrtFailure, RrtOptions, RrtSolution};
+pub use smooth::{Smoother, smooth};
 pub use space::{Axis, Space};
+pub use timing::{MotionLimits, TimedPath, TimingOptions, time_path};

@@ -1,0 +1,99 @@
+//! A path with times.
+
+use robotc_core::ids::DofIdx;
+use robotc_core::trajectory::{Trajectory, TrajectoryError, TrajectoryPoint};
+
+use super::MotionLimits;
+
+/// Knots of a motion with their times, in the coordinates of the space that was planned in.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TimedPath {
+    /// Seconds, from zero, growing.
+    pub times: Vec<f64>,
+    /// One for each time; cubic in between, see [`Trajectory`].
+    pub knots: Vec<TrajectoryPoint>,
+}
+
+impl TimedPath {
+    pub(super) fn resting_at(q: &[f64]) -> Self {
+        let rest = vec![0.0; q.len()];
+        let knot = TrajectoryPoint { positions: q.to_vec(), velocities: rest.clone(), accelerations: rest };
+        Self { times: vec![0.0], knots: vec![knot] }
+    }
+
+    pub(super) fn push(&mut self, time: f64, knot: TrajectoryPoint) {
+        self.times.push(time);
+        self.knots.push(knot);
+    }
+
+    /// Adds a motion that starts where and when this one ends.
+    pub(super) fn append(&mut self, next: TimedPath) {
+        let offset = self.duration();
+        // The first knot of `next` knows the acceleration to come.
+        self.times.pop();
+        self.knots.pop();
+        self.times.extend(next.times.iter().map(|t| t + offset));
+        self.knots.extend(next.knots);
+    }
+
+    /// Seconds from start to end.
+    pub fn duration(&self) -> f64 {
+        self.times.last().copied().unwrap_or(0.0)
+    }
+
+    /// The largest fraction of any limit that the motion uses anywhere, between the knots too; speeds count as they
+    /// are, accelerations by their square root, so that stretching time by this factor satisfies all limits.
+    pub fn limit_use(&self, limits: &MotionLimits) -> f64 {
+        let mut most = 0.0_f64;
+        for (times, knots) in self.times.windows(2).zip(self.knots.windows(2)) {
+            let h = times[1] - times[0];
+            let (a, b) = (&knots[0], &knots[1]);
+            for i in 0..limits.velocity.len() {
+                // p(t) = p0 + v0 t + c2 t^2 + c3 t^3: acceleration is linear, velocity has one extremum.
+                let slope = (b.positions[i] - a.positions[i]) / h;
+                let (v0, v1) = (a.velocities[i], b.velocities[i]);
+                let c2 = (3.0 * slope - 2.0 * v0 - v1) / h;
+                let c3 = (v0 + v1 - 2.0 * slope) / (h * h);
+                let acceleration = (2.0 * c2).abs().max((2.0 * c2 + 6.0 * c3 * h).abs());
+                let turn = if c3 == 0.0 { 0.0 } else { (-c2 / (3.0 * c3)).clamp(0.0, h) };
+                let between = v0 + turn * (2.0 * c2 + 3.0 * turn * c3);
+                let velocity = v0.abs().max(v1.abs()).max(between.abs());
+                most = most.max(velocity / limits.velocity[i]);
+                most = most.max((acceleration / limits.acceleration[i]).sqrt());
+            }
+        }
+        most
+    }
+
+    /// Stretches time where rounding or interpolation left the motion a trace too fast.
+    pub(super) fn slow_down_to(&mut self, limits: &MotionLimits) {
+        let factor = self.limit_use(limits);
+        if factor <= 1.0 {
+            return;
+        }
+        for time in &mut self.times {
+            *time *= factor;
+        }
+        for knot in &mut self.knots {
+            knot.velocities.iter_mut().for_each(|v| *v /= factor);
+            knot.accelerations.iter_mut().for_each(|a| *a /= factor * factor);
+        }
+    }
+
+    /// States at times from zero in steps of `period`, and at the end.
+    pub fn resample(&self, period: f64) -> Vec<(f64, TrajectoryPoint)> {
+        let dofs = (0..self.knots[0].positions.len()).map(robotc_core::ids::Idx::new).collect();
+        let names = vec![String::new(); self.knots[0].positions.len()];
+        let trajectory = self.clone().into_trajectory(dofs, names).expect("times of a timed path grow");
+        trajectory.sample_times(period).into_iter().map(|t| (t, trajectory.sample(t))).collect()
+    }
+
+    /// The motion as one of these degrees of freedom of a robot; `names` are their joints.
+    pub fn into_trajectory(
+        self,
+        dofs: Vec<DofIdx>,
+        names: Vec<String>,
+    ) -> Result<Trajectory, TrajectoryError> {
+        Trajectory::new(dofs, names, self.times, self.knots)
+    }
+}
