@@ -1,5 +1,6 @@
 //! Development tasks: `cargo xtask NAME`. One file per task, one line each in [`TASKS`].
 
+mod assets;
 mod test;
 mod tidy;
 
@@ -9,6 +10,7 @@ use std::process::ExitCode;
 type Task = (&'static str, &'static str, fn(&[String]) -> anyhow::Result<()>);
 
 const TASKS: &[Task] = &[
+    ("assets", "write the geometry in specs/, or --check it", assets::run),
     ("test", "all tests: format, lints, Rust, Python", test::run),
     ("tidy", "architecture invariants that text can show", tidy::run),
 ];
