@@ -63,7 +63,8 @@ impl Kinematics {
         }
     }
 
-    fn parent_from_child(&self, joint: JointIdx, value: f64) -> Pose {
+    /// `parent_from_child` of one joint at this value (radians or metres), corrections applied.
+    pub fn parent_from_child(&self, joint: JointIdx, value: f64) -> Pose {
         let described = &self.model.joints()[joint];
         match self.calibration.joint(joint) {
             None => described.parent_from_child(value),

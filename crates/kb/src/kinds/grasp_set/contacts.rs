@@ -1,0 +1,102 @@
+//! Where a closed hand touches: patches, not points, because two hard points never close.
+
+use nalgebra::Unit;
+use robotc_core::Pose;
+use robotc_core::geom::ConvexParts;
+
+use super::closure::PointContact;
+use super::surface::SurfacePoint;
+
+/// What counts as touching.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PatchOptions {
+    /// Surface points this close to a finger are touched, metres: how far pad and object give way.
+    pub depth: f64,
+    /// Most points that stand for one finger's patch.
+    pub points: usize,
+}
+
+/// Contacts of one finger link: surface points of the object within reach of its parts, thinned to those far apart.
+pub fn patch(
+    parts: &ConvexParts,
+    object_from_link: &Pose,
+    surface: &[SurfacePoint],
+    options: &PatchOptions,
+) -> Vec<PointContact> {
+    let Some(bounds) = parts.bounds() else { return Vec::new() };
+    let reach = bounds.padded(options.depth);
+    let link_from_object = object_from_link.inverse();
+    let centre_in_object = object_from_link * bounds.centre();
+    let mut touched = Vec::new();
+    for s in surface {
+        let point_in_link = link_from_object * s.point;
+        if !reach.contains(&point_in_link) || parts.height(&point_in_link) > options.depth {
+            continue;
+        }
+        // The finger presses from its side of the surface, whichever way the face is wound.
+        let inward = -s.normal.into_inner();
+        let away = s.point - centre_in_object;
+        let inward = if inward.dot(&away) >= 0.0 { inward } else { -inward };
+        touched.push(PointContact { point: s.point, inward: Unit::new_unchecked(inward) });
+    }
+    spread(touched, options.points)
+}
+
+/// At most `count` of the contacts, each the farthest from those taken before; the first is farthest from the mean.
+fn spread(contacts: Vec<PointContact>, count: usize) -> Vec<PointContact> {
+    if contacts.len() <= count {
+        return contacts;
+    }
+    let mean =
+        contacts.iter().map(|c| c.point.coords).sum::<nalgebra::Vector3<f64>>() / contacts.len() as f64;
+    let mut distance: Vec<f64> = contacts.iter().map(|c| (c.point.coords - mean).norm()).collect();
+    let mut chosen = Vec::with_capacity(count);
+    for _ in 0..count {
+        let mut farthest = 0;
+        for i in 1..contacts.len() {
+            if distance[i] > distance[farthest] {
+                farthest = i;
+            }
+        }
+        chosen.push(contacts[farthest]);
+        if chosen.len() == 1 {
+            distance.fill(f64::INFINITY);
+        }
+        for (d, c) in distance.iter_mut().zip(&contacts) {
+            *d = d.min((c.point - contacts[farthest].point).norm());
+        }
+    }
+    chosen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::surface::sample;
+    use super::*;
+    use nalgebra::Vector3;
+    use robotc_core::geom::box_part;
+
+    #[test]
+    fn a_pad_on_a_face_gives_the_corners_of_their_overlap() {
+        let object = box_part(Vector3::new(0.06, 0.06, 0.06)).mesh();
+        let pad = ConvexParts::new(vec![box_part(Vector3::new(0.01, 0.02, 0.02))]);
+        let object_from_pad = Pose::translation(0.035 + 2e-4, 0.0, 0.0);
+        let options = PatchOptions { depth: 1e-3, points: 4 };
+        let contacts = patch(&pad, &object_from_pad, &sample(&object, 0.002), &options);
+        assert_eq!(contacts.len(), 4);
+        for c in &contacts {
+            assert!((c.point.x - 0.03).abs() < 1e-9 && c.inward.x < -0.99);
+            assert!(c.point.y.abs() > 0.006 && c.point.z.abs() > 0.006, "{}", c.point);
+        }
+    }
+
+    #[test]
+    fn a_pad_that_is_away_touches_nothing() {
+        let object = box_part(Vector3::new(0.06, 0.06, 0.06)).mesh();
+        let pad = ConvexParts::new(vec![box_part(Vector3::new(0.01, 0.02, 0.02))]);
+        let options = PatchOptions { depth: 1e-3, points: 4 };
+        assert!(
+            patch(&pad, &Pose::translation(0.04, 0.0, 0.0), &sample(&object, 0.002), &options).is_empty()
+        );
+    }
+}

@@ -1,0 +1,287 @@
+//! From approaches to a ranked grasp set.
+
+use nalgebra::{Point3, Unit};
+use rayon::prelude::*;
+use robotc_core::geom::{ConvexParts, MeshIndex};
+use robotc_core::model::TriMesh;
+use robotc_planning::grasp::{Contact, Grasp, GraspSet};
+
+use super::closure::{ContactModel, PointContact, epsilon, wrenches};
+use super::contacts::{PatchOptions, patch};
+use super::hand::Hand;
+use super::strategy::{Approach, ClosedHand, Miss, Target, close_on};
+use super::surface::{ApproachOptions, SurfacePoint, approaches, sample};
+
+/// How a set is made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GenerateOptions {
+    /// Which approaches are tried.
+    pub approaches: ApproachOptions,
+    /// What counts as touching.
+    pub patch: PatchOptions,
+    /// Distance of the surface points that contacts are made of, metres.
+    pub surface_spacing: f64,
+    /// Coulomb friction.
+    pub friction: f64,
+    /// Edges of the pyramid that stands for a friction cone.
+    pub cone_edges: usize,
+    /// Smallest epsilon of a grasp that is kept.
+    pub least_epsilon: f64,
+    /// Most grasps that are kept, best first.
+    pub most_grasps: usize,
+}
+
+/// What became of the approaches.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Approaches tried.
+    pub tried: usize,
+    /// The hand passed by.
+    pub no_touch: usize,
+    /// Fewer than two fingers touched.
+    pub few_fingers: usize,
+    /// The palm touched after the hand was centred.
+    pub palm: usize,
+    /// The contacts do not close, or too weakly.
+    pub no_closure: usize,
+    /// Force closure.
+    pub closed: usize,
+}
+
+/// Tries all approaches. `progress` hears of the share done and may stop the work by returning false (then the result
+/// is `None`). The result does not depend on the number of threads.
+pub fn generate(
+    hand: &Hand,
+    mesh: &TriMesh,
+    parts: &ConvexParts,
+    centre_of_mass: Point3<f64>,
+    options: &GenerateOptions,
+    progress: impl Fn(f64) -> bool + Sync,
+) -> Option<(Vec<Grasp>, Counts)> {
+    let (low, high) = mesh.bounds()?;
+    let centre = nalgebra::center(&low, &high);
+    let radius = mesh.vertices.iter().map(|v| (v - centre).norm()).fold(0.0, f64::max);
+    let target = Target { parts, centre, radius };
+    let surface = sample(mesh, options.surface_spacing);
+    let length = surface.iter().map(|s| (s.point - centre_of_mass).norm()).fold(0.0, f64::max);
+    let model = ContactModel {
+        friction: options.friction,
+        cone_edges: options.cone_edges,
+        centre: centre_of_mass,
+        length: length.max(f64::MIN_POSITIVE),
+    };
+    let all = approaches(mesh, &MeshIndex::new(mesh), &options.approaches);
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let tried: Vec<Option<Trial>> = all
+        .par_iter()
+        .map(|approach| {
+            let trial = attempt(hand, &target, approach, &surface, &model, options);
+            let finished = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
+            (!finished.is_multiple_of(64) || progress(finished as f64 / all.len() as f64)).then_some(trial)
+        })
+        .collect();
+    let mut counts = Counts { tried: all.len(), ..Counts::default() };
+    let mut grasps = Vec::new();
+    for trial in tried {
+        match trial? {
+            Trial::Grasp(grasp) => {
+                counts.closed += 1;
+                grasps.push(*grasp);
+            }
+            Trial::NoClosure => counts.no_closure += 1,
+            Trial::Miss(Miss::NoTouch) => counts.no_touch += 1,
+            Trial::Miss(Miss::FewFingers) => counts.few_fingers += 1,
+            Trial::Miss(Miss::PalmTouches) => counts.palm += 1,
+        }
+    }
+    let mut grasps = GraspSet::new("", "", distinct(grasps)).grasps;
+    grasps.truncate(options.most_grasps);
+    Some((grasps, counts))
+}
+
+enum Trial {
+    Grasp(Box<Grasp>),
+    NoClosure,
+    Miss(Miss),
+}
+
+fn attempt(
+    hand: &Hand,
+    target: &Target,
+    approach: &Approach,
+    surface: &[SurfacePoint],
+    model: &ContactModel,
+    options: &GenerateOptions,
+) -> Trial {
+    let closed = match close_on(hand, target, approach) {
+        Ok(closed) => closed,
+        Err(miss) => return Trial::Miss(miss),
+    };
+    let contacts = contacts_of(hand, &closed, surface, &options.patch);
+    match epsilon(&wrenches(&contacts, model)) {
+        Some(epsilon) if epsilon >= options.least_epsilon => {
+            let contacts = contacts
+                .iter()
+                .map(|c| Contact { point_in_object: c.point, normal_in_object: c.inward })
+                .collect();
+            let direction = closed.object_from_tool.rotation * hand.gripper().approach_in_tool;
+            Trial::Grasp(Box::new(Grasp {
+                preshape: approach.preshape,
+                object_from_tool: closed.object_from_tool,
+                approach_in_object: Unit::new_normalize(direction.into_inner()),
+                standoff: approach.standoff,
+                closed: closed.closed,
+                contacts,
+                epsilon,
+                score: epsilon,
+            }))
+        }
+        _ => Trial::NoClosure,
+    }
+}
+
+/// Contact patches of all fingers of a closed hand.
+pub fn contacts_of(
+    hand: &Hand,
+    closed: &ClosedHand,
+    surface: &[SurfacePoint],
+    options: &PatchOptions,
+) -> Vec<PointContact> {
+    let mut contacts = Vec::new();
+    for (link, object_from_link) in hand.links.iter().zip(&closed.object_from_links) {
+        if link.is_finger {
+            contacts.extend(patch(link.parts, object_from_link, surface, options));
+        }
+    }
+    contacts
+}
+
+/// Poses closer than this are the same grasp: metres, and sine of the half angle.
+const SAME_GRASP: f64 = 2e-3;
+
+/// Drops grasps that repeat an earlier one, as rays beside each other often give after centring.
+fn distinct(grasps: Vec<Grasp>) -> Vec<Grasp> {
+    let mut kept: Vec<Grasp> = Vec::with_capacity(grasps.len());
+    for grasp in grasps {
+        let same = |other: &Grasp| {
+            let between = other.object_from_tool.inverse() * grasp.object_from_tool;
+            other.preshape == grasp.preshape
+                && between.translation.vector.norm() < SAME_GRASP
+                && between.rotation.imag().norm() < SAME_GRASP
+        };
+        if !kept.iter().any(same) {
+            kept.push(grasp);
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+
+    use nalgebra::Vector3;
+    use robotc_core::geom::box_part;
+    use robotc_core::ids::Idx;
+    use robotc_core::model::{DynamicLimits, JointMotion, Kinematics, Origin, RobotBuilder};
+    use robotc_core::robot::{Gripper, Preshape};
+    use robotc_core::{DofIdx, LinkIdx, Pose};
+
+    /// A palm with two jaws that open to 80 mm; the second follows the first.
+    fn jaws() -> (Kinematics, Gripper, Vec<(LinkIdx, ConvexParts)>) {
+        let mut b = RobotBuilder::new("jaws");
+        b.link("palm", vec![], vec![], None).link("left", vec![], vec![], None).link(
+            "right",
+            vec![],
+            vec![],
+            None,
+        );
+        let limits = (0.0, 0.04, false, DynamicLimits::DEFAULT);
+        let slide = JointMotion::Prismatic;
+        b.moving("left", slide, "palm", "left", Origin::default(), [0.0, 1.0, 0.0], limits, None);
+        let follow = Some(("left".to_owned(), 1.0, 0.0));
+        b.moving("right", slide, "palm", "right", Origin::default(), [0.0, -1.0, 0.0], limits, follow);
+        let model = Arc::new(b.build().unwrap());
+        let pad =
+            |y: f64| box_part(Vector3::new(0.02, 0.01, 0.05)).transformed(&Pose::translation(0.0, y, 0.075));
+        let parts = vec![
+            (LinkIdx::new(0), ConvexParts::new(vec![box_part(Vector3::new(0.06, 0.2, 0.1))])),
+            (LinkIdx::new(1), ConvexParts::new(vec![pad(0.005)])),
+            (LinkIdx::new(2), ConvexParts::new(vec![pad(-0.005)])),
+        ];
+        let gripper = Gripper {
+            name: "jaws".into(),
+            palm: LinkIdx::new(0),
+            palm_from_tool: Pose::translation(0.0, 0.0, 0.09),
+            approach_in_tool: Vector3::z_axis(),
+            dofs: vec![DofIdx::new(0)],
+            closing: vec![-1.0],
+            fingers: vec![LinkIdx::new(1), LinkIdx::new(2)],
+            preshapes: vec![Preshape { name: "open".into(), values: vec![0.04] }],
+        };
+        (Kinematics::new(model), gripper, parts)
+    }
+
+    fn options() -> GenerateOptions {
+        GenerateOptions {
+            approaches: ApproachOptions {
+                spacing: 0.02,
+                rolls: 4,
+                directions: 1,
+                cone: 0.0,
+                standoffs: vec![0.005],
+                preshapes: 1,
+            },
+            patch: PatchOptions { depth: 1e-3, points: 6 },
+            surface_spacing: 0.003,
+            friction: 0.5,
+            cone_edges: 8,
+            least_epsilon: 1e-3,
+            most_grasps: 1000,
+        }
+    }
+
+    fn grasps_of(size: [f64; 3]) -> (Vec<Grasp>, Counts) {
+        let (kinematics, gripper, parts) = jaws();
+        let hand =
+            Hand::new(&kinematics, &gripper, |l| parts.iter().find(|(link, _)| *link == l).map(|(_, p)| p));
+        let part = box_part(Vector3::from(size));
+        let mesh = part.mesh();
+        let object = ConvexParts::new(vec![part]);
+        generate(&hand, &mesh, &object, Point3::origin(), &options(), |_| true).unwrap()
+    }
+
+    #[test]
+    fn jaws_hold_a_box_across_its_narrow_side_centred() {
+        let (grasps, counts) = grasps_of([0.05, 0.12, 0.12]);
+        assert!(counts.closed > 20, "{counts:?}");
+        for g in &grasps {
+            // The jaws move along tool y, which must be the narrow side of the box, and both touch: 25 mm each.
+            let jaw = g.object_from_tool.rotation * Vector3::y();
+            assert!(jaw.x.abs() > 0.99, "{jaw}");
+            assert!(g.object_from_tool.translation.x.abs() < 1e-3, "{}", g.object_from_tool.translation);
+            assert!((g.closed[0] - 0.025).abs() < 2e-3, "{:?}", g.closed);
+            assert!(g.contacts.iter().any(|c| c.point_in_object.x > 0.0));
+            assert!(g.contacts.iter().any(|c| c.point_in_object.x < 0.0));
+        }
+    }
+
+    #[test]
+    fn a_box_wider_than_the_jaws_cannot_be_held() {
+        let (grasps, counts) = grasps_of([0.1, 0.1, 0.1]);
+        assert!(grasps.is_empty() && counts.tried > 0, "{counts:?}");
+    }
+
+    #[test]
+    fn threads_do_not_change_the_set() {
+        let run = |threads| {
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap()
+                .install(|| grasps_of([0.05, 0.1, 0.06]))
+        };
+        assert_eq!(run(1), run(2));
+    }
+}
