@@ -18,15 +18,15 @@ pub(crate) fn all() -> Vec<(&'static str, TriMesh)> {
     ]
 }
 
-/// A mug, 82 mm wide without its handle and 100 mm high, with a wall of 4 mm; the handle points along +x.
+/// A mug, 72 mm wide without its handle (jaws that open to 80 mm fit round it) and 100 mm high, with a wall of 4 mm; the handle points along +x.
 fn mug() -> TriMesh {
     let body = lathe(
         &[
             [0.0, 0.0, 0.0],
-            [0.041, 0.0, 0.006],
-            [0.041, 0.100, 0.0019],
-            [0.037, 0.100, 0.0019],
-            [0.037, 0.006, 0.005],
+            [0.036, 0.0, 0.006],
+            [0.036, 0.100, 0.0019],
+            [0.032, 0.100, 0.0019],
+            [0.032, 0.006, 0.005],
             [0.0, 0.006, 0.0],
         ],
         40,
@@ -36,7 +36,7 @@ fn mug() -> TriMesh {
         .map(|i| {
             let angle = PI * (0.5 - f64::from(i) / f64::from(steps));
             let reach = |v: f64| v.signum() * libm::pow(v.abs(), 0.8);
-            [0.0385 + 0.031 * reach(libm::cos(angle)).max(0.0), 0.052 + 0.030 * reach(libm::sin(angle))]
+            [0.0335 + 0.031 * reach(libm::cos(angle)).max(0.0), 0.052 + 0.030 * reach(libm::sin(angle))]
         })
         .collect();
     join([body, tube(&path, [0.0065, 0.0040], 12)])
