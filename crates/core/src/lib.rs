@@ -9,6 +9,7 @@ pub mod diag;
 pub mod geom;
 pub mod ids;
 pub mod ik;
+pub mod mesh;
 pub mod model;
 pub mod rng;
 pub mod robot;
@@ -16,6 +17,8 @@ pub mod so3;
 pub mod spec;
 pub mod system;
 pub mod task;
+pub mod urdf;
+mod xml;
 pub mod trajectory;
 
 pub use diag::{Diagnostic, Diagnostics, Severity, Sources, Span};

@@ -109,6 +109,215 @@ pub const CODES: &[CodeInfo] = &[
         "R0114",
         "unknown parameter",
         "The artefact kind has no parameter of this name. `robotc schema robot` prints all parameters of all kinds.",
+        "R0201",
+        "not well-formed XML",
+        "The file breaks a rule of XML: a tag that is not closed, a value without quotes, a stray `<` or `&`. \
+         The place is where the fault was noticed; the cause may stand a little before. All such faults of a \
+         file are listed at once.",
+    ),
+    entry(
+        "R0202",
+        "oddity of XML repaired",
+        "The file is not strictly XML, but has only one sensible reading, which was taken: for example an XML \
+         declaration that is not at the start, or text after the root element. Strict readers will refuse the \
+         file, so mend it when you can.",
+    ),
+    entry(
+        "R0203",
+        "undeclared namespace prefix",
+        "A name such as `sensor:camera` uses a prefix that no `xmlns:` attribute declares. The name is taken \
+         as it stands. Strict readers will refuse the file; declare the prefix on the root element.",
+    ),
+    entry(
+        "R0204",
+        "unresolved merge conflict",
+        "The file holds the markers `<<<<<<<`, `=======` and `         when two changes disagree. Choose one of the two versions and delete the marker lines. The first \
+         version is checked further, so that its other faults show up too.",
+    ),
+    entry(
+        "R0205",
+        "text is not UTF-8",
+        "Some bytes of the file make no character in UTF-8, often because it was saved in another encoding. \
+         They are read as a replacement character, which matters only where they are part of a name. Save the \
+         file as UTF-8.",
+    ),
+    entry(
+        "R0206",
+        "file too large or nested too deep",
+        "The file is beyond the bounds that protect this program from hostile input. A robot description is \
+         seldom larger than a few megabytes or nested deeper than twenty elements.",
+    ),
+    entry(
+        "R0207",
+        "not a robot description",
+        "The file is XML, but not a URDF robot: its root element is not `<robot>`, or the robot has no links. \
+         Fragments that are meant to be included by another file, and unexpanded xacro, look like this.",
+    ),
+    entry(
+        "R0208",
+        "element or attribute missing",
+        "URDF requires an element or attribute that is not there, such as the `<child>` of a joint or the \
+         name of a link.",
+    ),
+    entry(
+        "R0209",
+        "not a number",
+        "An attribute that holds numbers holds something else, or not as many numbers as it should. Numbers \
+         are separated by spaces and written with a point, such as `0.5 -1 1e-3`; `nan` and `inf` are \
+         refused.",
+    ),
+    entry(
+        "R0210",
+        "unknown element",
+        "An element of the robot has a name that is close to one of URDF, and is ignored as it stands. \
+         Elements with altogether different names belong to simulators and are ignored without a word.",
+    ),
+    entry(
+        "R0211",
+        "xacro left in a URDF",
+        "A plain URDF file holds elements of the xacro macro language, which are ignored. If they matter, \
+         give the file the ending `.xacro`, and it will be expanded.",
+    ),
+    entry(
+        "R0212",
+        "link is not declared",
+        "A joint refers to a link that no `<link>` element declares. If it can only be the root, such as \
+         `world`, it is added with a warning; else it is an error, often a misspelt name.",
+    ),
+    entry(
+        "R0213",
+        "name defined twice",
+        "Two links or two joints of one robot have the same name, so references to it would be ambiguous. \
+         Copies that say the same are accepted with a warning. A link and a joint may share a name.",
+    ),
+    entry(
+        "R0214",
+        "link with two parents",
+        "Two joints have the same child link. URDF describes trees, in which every link has one parent; a \
+         closed mechanism must be opened at one joint.",
+    ),
+    entry(
+        "R0215",
+        "several roots",
+        "The robot falls into pieces that no joint connects, so the pose of one piece in the other is \
+         unknown. Join them by fixed joints, or describe them in files of their own.",
+    ),
+    entry(
+        "R0216",
+        "joints form a loop",
+        "Following a link to its parents leads back to the link. URDF describes trees; open the loop by \
+         removing one joint.",
+    ),
+    entry(
+        "R0217",
+        "link without joints dropped",
+        "A link that no joint refers to has no place on the robot. It is dropped.",
+    ),
+    entry(
+        "R0220",
+        "unknown joint type",
+        "The type of a joint is one of `fixed`, `revolute`, `continuous`, `prismatic`, `floating` and \
+         `planar`.",
+    ),
+    entry(
+        "R0221",
+        "floating or planar joint",
+        "A joint with several degrees of freedom. At the root it only says that the robot can stand anywhere, \
+         and it is taken as fixed: tasks say where a robot stands, robot specifications how its base drives. \
+         Elsewhere it is refused; write it as a series of prismatic and revolute joints.",
+    ),
+    entry(
+        "R0222",
+        "axis without direction",
+        "A moving joint needs an axis, and the one given is zero, so that the direction of motion is unknown. \
+         Without any `<axis>` URDF means `1 0 0`.",
+    ),
+    entry(
+        "R0223",
+        "axis is not a unit vector",
+        "Only the direction of an axis counts, so the joint values of this robot are radians or metres all \
+         the same. Other programs may scale the motion by the length; mend the file when you can.",
+    ),
+    entry(
+        "R0224",
+        "position limits assumed",
+        "A revolute or prismatic joint has no position limits that can be used. Limits of the safety \
+         controller are taken if there are any; else half a turn or ten metres to both sides. Plans may then \
+         use positions that the real joint does not have: write the limits into the description or the robot \
+         specification.",
+    ),
+    entry(
+        "R0225",
+        "position limits repaired",
+        "The lower limit is not below the upper one. Limits the wrong way round are swapped; equal ones are \
+         kept, and the joint cannot move.",
+    ),
+    entry(
+        "R0226",
+        "mimic joint without leader",
+        "A joint mimics another that does not exist, is fixed, or follows in a circle, so nothing gives it a \
+         value.",
+    ),
+    entry(
+        "R0227",
+        "velocity limit not positive",
+        "A velocity limit of zero or less would forbid all motion. It is taken as not given, and a default is \
+         used until the robot specification or a joint limit file gives one.",
+    ),
+    entry(
+        "R0230",
+        "mass not positive",
+        "A link has a mass of zero or less, which no real body has. Its inertia is ignored; motion planning \
+         does not need it, dynamics does.",
+    ),
+    entry(
+        "R0231",
+        "shape cannot be used",
+        "A visual or collision element has no shape, an unknown shape, or a size that is not positive.",
+    ),
+    entry(
+        "R0290",
+        "internal disagreement",
+        "The description passed all checks, but reading back what was understood gave something else. This is \
+         a fault of robotc and not of the file. Please report it.",
+    ),
+    entry(
+        "R0291",
+        "robot refused",
+        "Links and joints were understood one by one, but make no robot together.",
+    ),
+    entry(
+        "R0301",
+        "visual mesh missing",
+        "A mesh that shows what a link looks like was not found. The link is drawn without it. References \
+         `package://name/...` are looked up in the packages of the robot specification, then in the folders \
+         above the description.",
+    ),
+    entry(
+        "R0302",
+        "collision mesh missing",
+        "A mesh that says where a link is solid was not found. Without it, motion of the joints named in the \
+         message could not be checked for collisions, so the robot is refused. `package://name/...` is looked \
+         up in the packages of the robot specification, then in the folders above the description.",
+    ),
+    entry(
+        "R0303",
+        "mesh cannot be read",
+        "The mesh file is damaged, holds coordinates that are not finite numbers, has no triangles, or is in \
+         a format other than STL, OBJ and COLLADA.",
+    ),
+    entry(
+        "R0304",
+        "mesh repaired",
+        "Faces of a mesh refer to vertices that the file does not hold. They were dropped, so the surface may \
+         have holes; export the mesh again if you can.",
+    ),
+    entry(
+        "R0305",
+        "another mesh file used",
+        "The mesh file named by the description does not exist, but one of the same name with another ending, \
+         or at the end of another path, does. It is used.",
+>>>>>>> 97b7f9f (Core: URDF and mesh loading with positioned diagnostics)
     ),
 ];
 

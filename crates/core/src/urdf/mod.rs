@@ -1,0 +1,89 @@
+//! Robot descriptions (URDF, xacro) to [`RobotModel`].
+//!
+//! Two passes. The first is ours: it knows places, repairs what has one meaning, and reports everything else at once.
+//! What it leaves is written as canonical URDF and read by `urdf_rs`, so that the model rests on a second, independent
+//! reading of the format. Numbers survive both as written.
+
+mod attributes;
+mod canonical;
+mod draft;
+mod grouped;
+mod limits;
+mod lower;
+mod meshes;
+mod read;
+mod resolve;
+mod structure;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use crate::diag::{Diagnostics, Sources};
+use crate::model::RobotModel;
+use crate::system::System;
+use crate::xml::{self, Element};
+
+/// What to do about meshes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum MeshPolicy {
+    /// A missing visual mesh is left out with a warning; a missing collision mesh is an error.
+    #[default]
+    Load,
+    /// A missing mesh of either kind is left out with a warning.
+    SkipMissing,
+    /// Mesh files are not looked at and no link has mesh shapes: enough for kinematics.
+    Ignore,
+}
+
+/// How to load a description.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LoadOptions {
+    /// Folders of packages, for `package://NAME/...` and `$(find NAME)`. Packages that are not listed are looked for in
+    /// the folders above the description.
+    pub packages: BTreeMap<String, PathBuf>,
+    /// What to do about meshes.
+    pub meshes: MeshPolicy,
+    /// Values of xacro arguments; they override the defaults of the file.
+    pub arguments: BTreeMap<String, String>,
+}
+
+/// Loads the URDF or xacro file at `path`.
+///
+/// Texts go to `sources`, which all places in the diagnostics point into. The model is `None` exactly when the
+/// diagnostics hold an error. Links and joints are in file order.
+pub fn load(
+    system: &dyn System,
+    sources: &mut Sources,
+    path: &Path,
+    options: &LoadOptions,
+) -> (Option<RobotModel>, Diagnostics) {
+    let (root, mut found) = xml::load(system, sources, path);
+    let model = root.and_then(|root| lower(system, path, &root, options, &mut found));
+    let model = model.filter(|_| !found.has_errors());
+    (model, found)
+}
+
+/// The model of a `<robot>` element.
+fn lower(
+    system: &dyn System,
+    path: &Path,
+    root: &Element,
+    options: &LoadOptions,
+    found: &mut Diagnostics,
+) -> Option<RobotModel> {
+    let mut draft = read::read(root, found)?;
+    structure::check(&mut draft, found);
+    limits::check(&mut draft, found);
+    if found.has_errors() {
+        return None;
+    }
+    let robot = match urdf_rs::read_from_string(&canonical::text(&draft)) {
+        Ok(robot) => robot,
+        Err(error) => {
+            found.push(lower::internal(&error.to_string()));
+            return None;
+        }
+    };
+    let mut meshes = meshes::MeshSource::new(system, options, path, &draft);
+    lower::lower(&draft, &robot, &mut meshes, found)
+}

@@ -1,0 +1,123 @@
+//! From a mesh reference as descriptions write it to a file.
+
+use std::collections::BTreeMap;
+use std::path::{Component, Path, PathBuf};
+
+use crate::system::System;
+
+/// Most folders above a description that are searched for a package.
+const FOLDERS_ABOVE: usize = 8;
+
+/// A file found for a reference.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Resolved {
+    /// The file.
+    pub(crate) path: PathBuf,
+    /// Whether it is not quite what was asked for: another extension, or a foreign absolute path found by its tail.
+    pub(crate) guessed: bool,
+}
+
+/// The existing file that `uri`, written in the file `description`, means; or `None`.
+///
+/// `package://NAME/rest` and `model://NAME/rest` are looked up in `packages`, then as `NAME/rest`, or `rest` in a folder
+/// called NAME, from the folder of the description upwards. Absolute paths of another machine are tried by their tails.
+pub(crate) fn resolve(
+    system: &dyn System,
+    packages: &BTreeMap<String, PathBuf>,
+    description: &Path,
+    uri: &str,
+) -> Option<Resolved> {
+    let candidates = candidates(packages, description, uri);
+    for (path, exact) in &candidates {
+        if system.exists(path) {
+            return Some(Resolved { path: path.clone(), guessed: !exact });
+        }
+    }
+    candidates.iter().flat_map(|(path, _)| siblings(path)).find(|path| system.exists(path)).map(|path| Resolved {
+        path,
+        guessed: true,
+    })
+}
+
+/// The folder of a package: given, or found above the description.
+pub(crate) fn package_folder(
+    system: &dyn System,
+    packages: &BTreeMap<String, PathBuf>,
+    description: &Path,
+    name: &str,
+) -> Option<PathBuf> {
+    if let Some(folder) = packages.get(name) {
+        return Some(folder.clone());
+    }
+    folders_above(description).find_map(|folder| {
+        if folder.file_name().is_some_and(|f| f == name) {
+            return Some(folder.to_path_buf());
+        }
+        Some(folder.join(name)).filter(|inside| system.exists(inside))
+    })
+}
+
+/// Places to look at, best first, and whether each is exactly what was asked for.
+fn candidates(packages: &BTreeMap<String, PathBuf>, description: &Path, uri: &str) -> Vec<(PathBuf, bool)> {
+    let uri = uri.trim().replace('\\', "/");
+    let folder = description.parent().unwrap_or(Path::new(""));
+    let in_package = |reference: &str| -> Vec<(PathBuf, bool)> {
+        let (name, rest) = reference.split_once('/').unwrap_or((reference, ""));
+        let given = packages.get(name).map(|folder| folder.join(rest));
+        let found = folders_above(description).flat_map(|folder| {
+            let named = folder.file_name().is_some_and(|f| f == name).then(|| folder.join(rest));
+            named.into_iter().chain([folder.join(name).join(rest)])
+        });
+        given.into_iter().chain(found).map(|path| (normal(&path), true)).collect()
+    };
+    if let Some(reference) = uri.strip_prefix("package://").or_else(|| uri.strip_prefix("model://")) {
+        return match reference.strip_prefix('/') {
+            Some(_) => absolute(description, reference),
+            None => in_package(reference),
+        };
+    }
+    if let Some(reference) = uri.strip_prefix("$(find ") {
+        return in_package(&reference.replacen(')', "", 1));
+    }
+    let path = uri.strip_prefix("file://").unwrap_or(&uri);
+    if path.starts_with('/') || path.get(1..3) == Some(":/") {
+        return absolute(description, path);
+    }
+    vec![(normal(&folder.join(path)), true)]
+}
+
+/// The path itself, then its tails below the folders above the description: absolute paths seldom travel.
+fn absolute(description: &Path, path: &str) -> Vec<(PathBuf, bool)> {
+    let mut places = vec![(normal(Path::new(path)), true)];
+    let parts: Vec<&str> = path.split('/').filter(|part| !part.is_empty()).collect();
+    for start in 1..parts.len() {
+        let tail = parts[start..].join("/");
+        places.extend(folders_above(description).map(|folder| (normal(&folder.join(&tail)), false)));
+    }
+    places
+}
+
+fn folders_above(description: &Path) -> impl Iterator<Item = &Path> {
+    description.ancestors().skip(1).take(FOLDERS_ABOVE)
+}
+
+/// The same stem with the other endings that meshes have.
+fn siblings(path: &Path) -> impl Iterator<Item = PathBuf> {
+    let path = path.to_path_buf();
+    ["stl", "STL", "obj", "OBJ", "dae", "DAE"].into_iter().map(move |ending| path.with_extension(ending))
+}
+
+/// `path` without `.` and `..`, by its text alone.
+fn normal(path: &Path) -> PathBuf {
+    let mut out = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(out.components().next_back(), Some(Component::Normal(_))) => {
+                out.pop();
+            }
+            other => out.push(other),
+        }
+    }
+    out
+}
