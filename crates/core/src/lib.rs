@@ -17,9 +17,9 @@ pub mod so3;
 pub mod spec;
 pub mod system;
 pub mod task;
+pub mod trajectory;
 pub mod urdf;
 mod xml;
-pub mod trajectory;
 
 pub use diag::{Diagnostic, Diagnostics, Severity, Sources, Span};
 pub use ids::{BodyIdx, DofIdx, JointIdx, LinkIdx, TypedVec};

@@ -109,6 +109,8 @@ pub const CODES: &[CodeInfo] = &[
         "R0114",
         "unknown parameter",
         "The artefact kind has no parameter of this name. `robotc schema robot` prints all parameters of all kinds.",
+    ),
+    entry(
         "R0201",
         "not well-formed XML",
         "The file breaks a rule of XML: a tag that is not closed, a value without quotes, a stray `<` or `&`. \
@@ -131,7 +133,8 @@ pub const CODES: &[CodeInfo] = &[
     entry(
         "R0204",
         "unresolved merge conflict",
-        "The file holds the markers `<<<<<<<`, `=======` and `         when two changes disagree. Choose one of the two versions and delete the marker lines. The first \
+        "The file holds the markers `<<<<<<<`, `=======` and `>>>>>>>` that a version control system leaves \
+         when two changes disagree. Choose one of the two versions and delete the marker lines. The first \
          version is checked further, so that its other faults show up too.",
     ),
     entry(
@@ -317,7 +320,6 @@ pub const CODES: &[CodeInfo] = &[
         "another mesh file used",
         "The mesh file named by the description does not exist, but one of the same name with another ending, \
          or at the end of another path, does. It is used.",
->>>>>>> 97b7f9f (Core: URDF and mesh loading with positioned diagnostics)
     ),
 ];
 

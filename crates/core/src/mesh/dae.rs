@@ -25,7 +25,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<(RawMesh, Option<UpAxis>), MeshError>
         let line = first.span.map_or(0, |span| sources.line_column(span).line);
         return Err(MeshError::Malformed(format!("line {line}: {}", first.message)));
     }
-    let root = root.filter(|r| r.name == "COLLADA").ok_or_else(|| malformed("the root element is not <COLLADA>"))?;
+    let root =
+        root.filter(|r| r.name == "COLLADA").ok_or_else(|| malformed("the root element is not <COLLADA>"))?;
     let asset = root.child("asset");
     let unit = match asset.and_then(|a| a.child("unit")).and_then(|u| u.value("meter")) {
         None => 1.0,
@@ -90,7 +91,12 @@ struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     /// Adds what hangs on a node (or visual scene) whose parent frame is placed by `metres_from_parent`.
-    fn node(&mut self, node: &'a Element, metres_from_parent: &Matrix4<f64>, depth: usize) -> Result<(), MeshError> {
+    fn node(
+        &mut self,
+        node: &'a Element,
+        metres_from_parent: &Matrix4<f64>,
+        depth: usize,
+    ) -> Result<(), MeshError> {
         self.nodes += 1;
         if depth > MOST_NESTED || self.nodes > MOST_NODES {
             return Err(malformed("nodes are nested too deep, or refer to each other in a circle"));
@@ -161,10 +167,12 @@ impl<'a> Scene<'a> {
     /// Where vertex indices stand in the `<p>` lists of a primitive, how many indices each corner has, and the source of
     /// positions; `None` if the element is no primitive with vertices.
     fn positions(&self, primitive: &'a Element) -> Option<(usize, usize, &'a Element)> {
-        let inputs = || primitive.named("input").map(|i| {
-            let offset = i.value("offset").and_then(|o| o.trim().parse::<usize>().ok()).unwrap_or(0);
-            (i, offset)
-        });
+        let inputs = || {
+            primitive.named("input").map(|i| {
+                let offset = i.value("offset").and_then(|o| o.trim().parse::<usize>().ok()).unwrap_or(0);
+                (i, offset)
+            })
+        };
         let stride = inputs().map(|(_, offset)| offset.min(64)).max()? + 1;
         let (input, offset) = inputs().find(|(i, _)| i.value("semantic") == Some("VERTEX"))?;
         let vertices = target(&self.ids, input.value("source"))?;
@@ -175,7 +183,8 @@ impl<'a> Scene<'a> {
 
 /// The points of a `<source>`, by its accessor.
 fn points(source: &Element) -> Result<Vec<Point3<f64>>, MeshError> {
-    let array = source.child("float_array").ok_or_else(|| malformed("a source of positions has no numbers"))?;
+    let array =
+        source.child("float_array").ok_or_else(|| malformed("a source of positions has no numbers"))?;
     let numbers = floats(&array.text())?;
     let accessor = source.child("technique_common").and_then(|t| t.child("accessor"));
     let entry = |name: &str, default: usize| {
@@ -214,10 +223,13 @@ fn polygons(
             "triangles" => list.chunks_exact(3).for_each(&mut emit),
             "polygons" | "trifans" => emit(&list),
             "polylist" => {
-                let counts = primitive.child("vcount").map(|v| integers(&v.text())).transpose()?.unwrap_or_default();
+                let counts =
+                    primitive.child("vcount").map(|v| integers(&v.text())).transpose()?.unwrap_or_default();
                 let mut rest = list.as_slice();
                 for count in counts {
-                    let Some((polygon, after)) = usize::try_from(count).ok().and_then(|n| rest.split_at_checked(n)) else {
+                    let Some((polygon, after)) =
+                        usize::try_from(count).ok().and_then(|n| rest.split_at_checked(n))
+                    else {
                         return Err(malformed("a polylist has fewer corners than it counts"));
                     };
                     emit(polygon);
@@ -267,9 +279,13 @@ fn transform(element: &Element) -> Result<Matrix4<f64>, MeshError> {
 }
 
 fn floats(text: &str) -> Result<Vec<f64>, MeshError> {
-    text.split_ascii_whitespace().map(|w| w.parse().map_err(|_| malformed(&format!("`{w}` is not a number")))).collect()
+    text.split_ascii_whitespace()
+        .map(|w| w.parse().map_err(|_| malformed(&format!("`{w}` is not a number"))))
+        .collect()
 }
 
 fn integers(text: &str) -> Result<Vec<i64>, MeshError> {
-    text.split_ascii_whitespace().map(|w| w.parse().map_err(|_| malformed(&format!("`{w}` is not an index")))).collect()
+    text.split_ascii_whitespace()
+        .map(|w| w.parse().map_err(|_| malformed(&format!("`{w}` is not an index"))))
+        .collect()
 }

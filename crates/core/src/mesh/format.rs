@@ -26,7 +26,9 @@ impl MeshFormat {
         if text.contains("<COLLADA") {
             return Some(Self::Dae);
         }
-        if text.trim_start().get(..5).is_some_and(|s| s.eq_ignore_ascii_case("solid")) && text.contains("facet") {
+        if text.trim_start().get(..5).is_some_and(|s| s.eq_ignore_ascii_case("solid"))
+            && text.contains("facet")
+        {
             return Some(Self::Stl);
         }
         match extension.to_ascii_lowercase().as_str() {

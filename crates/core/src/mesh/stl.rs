@@ -24,7 +24,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, MeshError> {
 }
 
 fn read_binary(bytes: &[u8]) -> Result<RawMesh, MeshError> {
-    let stated = stated_facets(bytes).ok_or_else(|| MeshError::Malformed("ends within the header".to_owned()))?;
+    let stated =
+        stated_facets(bytes).ok_or_else(|| MeshError::Malformed("ends within the header".to_owned()))?;
     let held = (bytes.len() - HEADER) / FACET;
     if stated > held {
         return Err(MeshError::Malformed(format!("says {stated} triangles, but ends after {held}")));

@@ -34,7 +34,10 @@ pub(super) fn number(element: &Element, name: &str, found: &mut Diagnostics) -> 
 }
 
 /// The `N` finite numbers that `attribute` holds, or an error in `found`.
-pub(super) fn parse_numbers<const N: usize>(attribute: &Attribute, found: &mut Diagnostics) -> Option<[f64; N]> {
+pub(super) fn parse_numbers<const N: usize>(
+    attribute: &Attribute,
+    found: &mut Diagnostics,
+) -> Option<[f64; N]> {
     let expected = if N == 1 { "a number".to_owned() } else { format!("{N} numbers separated by spaces") };
     let mut fail = |message: String, label: &str, hint: Option<&str>| {
         let mut d = Diagnostic::error("R0209", message).at(attribute.span, label).expected(expected.clone());
@@ -45,7 +48,11 @@ pub(super) fn parse_numbers<const N: usize>(attribute: &Attribute, found: &mut D
     let value = attribute.value.trim();
     if value.contains("${") || value.contains("$(") {
         let message = format!("`{}` holds an unexpanded xacro expression", attribute.name);
-        return fail(message, "not a number yet", Some("expand the file with xacro, or give it the ending .xacro"));
+        return fail(
+            message,
+            "not a number yet",
+            Some("expand the file with xacro, or give it the ending .xacro"),
+        );
     }
     let words: Vec<&str> = value.split_whitespace().collect();
     if words.len() != N {

@@ -53,8 +53,12 @@ fn write_geometry(out: &mut String, tag: &str, geometry: &GeometryDraft) -> std:
     write!(out, "<{tag}>{}<geometry>", origin(&geometry.origin))?;
     match &geometry.shape {
         ShapeDraft::Box { size } => write!(out, "<box size=\"{}\"/>", joined(size))?,
-        ShapeDraft::Cylinder { radius, length } => write!(out, "<cylinder radius=\"{radius}\" length=\"{length}\"/>")?,
-        ShapeDraft::Capsule { radius, length } => write!(out, "<capsule radius=\"{radius}\" length=\"{length}\"/>")?,
+        ShapeDraft::Cylinder { radius, length } => {
+            write!(out, "<cylinder radius=\"{radius}\" length=\"{length}\"/>")?
+        }
+        ShapeDraft::Capsule { radius, length } => {
+            write!(out, "<capsule radius=\"{radius}\" length=\"{length}\"/>")?
+        }
         ShapeDraft::Sphere { radius } => write!(out, "<sphere radius=\"{radius}\"/>")?,
         ShapeDraft::Mesh { uri, scale } => {
             write!(out, "<mesh filename=\"{}\" scale=\"{}\"/>", escaped(&uri.text), joined(scale))?;
@@ -70,13 +74,21 @@ fn write_geometry(out: &mut String, tag: &str, geometry: &GeometryDraft) -> std:
 fn write_joint(out: &mut String, joint: &JointDraft) -> std::fmt::Result {
     let (name, kind) = (escaped(&joint.name.text), joint.kind.name());
     writeln!(out, "<joint name=\"{name}\" type=\"{kind}\">{}", origin(&joint.origin))?;
-    writeln!(out, "<parent link=\"{}\"/><child link=\"{}\"/>", escaped(&joint.parent.text), escaped(&joint.child.text))?;
+    writeln!(
+        out,
+        "<parent link=\"{}\"/><child link=\"{}\"/>",
+        escaped(&joint.parent.text),
+        escaped(&joint.child.text)
+    )?;
     if joint.kind != JointKind::Fixed {
         writeln!(out, "<axis xyz=\"{}\"/>", joined(&joint.axis))?;
         let limits = &joint.limits;
         let [lower, upper, velocity, effort] =
             [limits.lower, limits.upper, limits.velocity, limits.effort].map(|x| x.unwrap_or(0.0));
-        writeln!(out, "<limit lower=\"{lower}\" upper=\"{upper}\" velocity=\"{velocity}\" effort=\"{effort}\"/>")?;
+        writeln!(
+            out,
+            "<limit lower=\"{lower}\" upper=\"{upper}\" velocity=\"{velocity}\" effort=\"{effort}\"/>"
+        )?;
     }
     if let Some(mimic) = &joint.mimic {
         let (leader, multiplier, offset) = (escaped(&mimic.joint.text), mimic.multiplier, mimic.offset);
@@ -95,5 +107,9 @@ fn joined(numbers: &[f64]) -> String {
 }
 
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;").replace('\'', "&apos;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+        .replace('\'', "&apos;")
 }

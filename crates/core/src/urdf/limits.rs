@@ -26,13 +26,19 @@ pub(super) fn check(draft: &mut Draft, found: &mut Diagnostics) {
     unnormalised.finish(found, |count, first| {
         Diagnostic::warning(
             "R0223",
-            format!("the axis of joint `{first}`{} is no unit vector; only its direction counts", and_others(count)),
+            format!(
+                "the axis of joint `{first}`{} is no unit vector; only its direction counts",
+                and_others(count)
+            ),
         )
     });
     slow.finish(found, |count, first| {
         Diagnostic::warning(
             "R0227",
-            format!("joint `{first}`{} has no positive velocity limit; taken as not given", and_others(count)),
+            format!(
+                "joint `{first}`{} has no positive velocity limit; taken as not given",
+                and_others(count)
+            ),
         )
     });
 }
@@ -58,7 +64,9 @@ fn position(joint: &mut JointDraft, found: &mut Diagnostics) {
     let assume = |lower: f64, upper: f64, why: String| {
         let unit = if joint.kind == JointKind::Prismatic { "m" } else { "rad" };
         let message = format!("joint `{}` {why}; {lower:.4} to {upper:.4} {unit} are used", joint.name.text);
-        Diagnostic::warning("R0224", message).at(joint.limits_span, "here").hint("give lower and upper in `<limit>`")
+        Diagnostic::warning("R0224", message)
+            .at(joint.limits_span, "here")
+            .hint("give lower and upper in `<limit>`")
     };
     let half = if joint.kind == JointKind::Prismatic { ASSUMED_TRAVEL } else { PI };
     let (lower, upper, finding) = match (joint.limits.lower, joint.limits.upper) {
@@ -73,9 +81,11 @@ fn position(joint: &mut JointDraft, found: &mut Diagnostics) {
             (at, at, Some(Diagnostic::warning("R0225", message).at(joint.limits_span, "an empty range")))
         }
         given => match (joint.soft_limits, given) {
-            ((Some(lower), Some(upper)), _) if lower < upper => {
-                (lower, upper, Some(assume(lower, upper, "has limits only in its safety controller".to_owned())))
-            }
+            ((Some(lower), Some(upper)), _) if lower < upper => (
+                lower,
+                upper,
+                Some(assume(lower, upper, "has limits only in its safety controller".to_owned())),
+            ),
             // A bound that is not written is zero (URDF 1.0), where that leaves a range.
             (_, (None, Some(upper))) if upper > 0.0 => {
                 (0.0, upper, Some(assume(0.0, upper, "has no lower limit".to_owned())))

@@ -3,7 +3,9 @@
 use super::draft::{Draft, JointKind};
 use super::meshes::MeshSource;
 use crate::diag::{Diagnostic, Diagnostics};
-use crate::model::{DynamicLimits, Geometry, Inertial, JointMotion, ModelError, Origin, RobotBuilder, RobotModel, Shape};
+use crate::model::{
+    DynamicLimits, Geometry, Inertial, JointMotion, ModelError, Origin, RobotBuilder, RobotModel, Shape,
+};
 
 /// The model of `robot`, which is `draft` read back. Meshes come from `meshes`.
 pub(super) fn lower(
@@ -44,14 +46,26 @@ pub(super) fn lower(
                 continue;
             }
         };
-        let mimic = joint.mimic.as_ref().map(|m| (m.joint.clone(), m.multiplier.unwrap_or(1.0), m.offset.unwrap_or(0.0)));
+        let mimic = joint
+            .mimic
+            .as_ref()
+            .map(|m| (m.joint.clone(), m.multiplier.unwrap_or(1.0), m.offset.unwrap_or(0.0)));
         let continuous = written.kind == JointKind::Continuous;
         let (lower, upper) = match continuous {
             true => (f64::NEG_INFINITY, f64::INFINITY),
             false => (joint.limit.lower, joint.limit.upper),
         };
         let limits = (lower, upper, continuous, dynamics(joint.limit.velocity));
-        builder.moving(&joint.name, motion, parent, child, origin(&joint.origin), *joint.axis.xyz, limits, mimic);
+        builder.moving(
+            &joint.name,
+            motion,
+            parent,
+            child,
+            origin(&joint.origin),
+            *joint.axis.xyz,
+            limits,
+            mimic,
+        );
     }
     builder.build().map_err(|error| found.push(refused(draft, &error))).ok()
 }

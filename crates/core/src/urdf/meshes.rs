@@ -36,7 +36,12 @@ enum Use {
 }
 
 impl<'a> MeshSource<'a> {
-    pub(super) fn new(system: &'a dyn System, options: &'a LoadOptions, path: &'a Path, draft: &'a Draft) -> Self {
+    pub(super) fn new(
+        system: &'a dyn System,
+        options: &'a LoadOptions,
+        path: &'a Path,
+        draft: &'a Draft,
+    ) -> Self {
         Self { system, options, path, draft, files: BTreeMap::new(), scaled: BTreeMap::new() }
     }
 
@@ -93,7 +98,9 @@ impl<'a> MeshSource<'a> {
                 let message = format!("mesh `{}` of link `{link}` cannot be used: {reason}", uri.text);
                 found.push(match self.is_fatal(purpose) {
                     true => Diagnostic::error("R0303", message).at(uri.span, "this mesh"),
-                    false => Diagnostic::warning("R0303", format!("{message}; left out")).at(uri.span, "this mesh"),
+                    false => {
+                        Diagnostic::warning("R0303", format!("{message}; left out")).at(uri.span, "this mesh")
+                    }
                 });
                 None
             }
@@ -114,7 +121,8 @@ impl<'a> MeshSource<'a> {
         let result = loaded.map(|loaded| {
             if loaded.repairs.are_serious() {
                 let dropped = loaded.repairs.bad_indices;
-                let message = format!("{}: {dropped} faces name vertices that do not exist; dropped", path.display());
+                let message =
+                    format!("{}: {dropped} faces name vertices that do not exist; dropped", path.display());
                 found.push(Diagnostic::warning("R0304", message).at(span, "used here"));
             }
             Arc::new(loaded.mesh)
@@ -132,8 +140,14 @@ impl<'a> MeshSource<'a> {
     }
 
     fn missing(&self, uri: &str, span: Span, link: &str, purpose: Use) -> Diagnostic {
-        let hint = match uri.strip_prefix("package://").and_then(|r| r.split('/').next()).filter(|p| !p.is_empty()) {
-            Some(package) => format!("say where package `{package}` is, under [packages] or beside the description"),
+        let hint = match uri
+            .strip_prefix("package://")
+            .and_then(|r| r.split('/').next())
+            .filter(|p| !p.is_empty())
+        {
+            Some(package) => {
+                format!("say where package `{package}` is, under [packages] or beside the description")
+            }
             None => "paths are relative to the folder of the description".to_owned(),
         };
         if purpose == Use::Visual {

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::attributes::{number, numbers, parse_numbers, required};
-use super::draft::{Draft, GeometryDraft, JointDraft, JointKind, LimitsDraft, LinkDraft, MimicDraft, Name, ShapeDraft};
+use super::draft::{
+    Draft, GeometryDraft, JointDraft, JointKind, LimitsDraft, LinkDraft, MimicDraft, Name, ShapeDraft,
+};
 use super::grouped::{Grouped, and_others};
 use crate::diag::{Diagnostic, Diagnostics, nearest};
 use crate::model::{Inertial, Origin};
@@ -52,11 +54,17 @@ pub(super) fn read(root: &Element, found: &mut Diagnostics) -> Option<Draft> {
         }
     }
     masses.finish(found, |count, first| {
-        Diagnostic::warning("R0230", format!("link `{first}`{} has no positive mass; its inertia is ignored", and_others(count)))
+        Diagnostic::warning(
+            "R0230",
+            format!("link `{first}`{} has no positive mass; its inertia is ignored", and_others(count)),
+        )
     });
     xacro.finish(found, |count, first| {
-        Diagnostic::warning("R0211", format!("xacro element `<{first}>`{} in a plain URDF; ignored", and_others(count)))
-            .hint("give the file the ending .xacro to have them expanded")
+        Diagnostic::warning(
+            "R0211",
+            format!("xacro element `<{first}>`{} in a plain URDF; ignored", and_others(count)),
+        )
+        .hint("give the file the ending .xacro to have them expanded")
     });
     Some(draft)
 }
@@ -109,7 +117,9 @@ fn link(
 fn origin(parent: &Element, found: &mut Diagnostics) -> Origin {
     match parent.child("origin") {
         None => Origin::default(),
-        Some(e) => Origin { xyz: numbers(e, "xyz", [0.0; 3], found), rpy: numbers(e, "rpy", [0.0; 3], found) },
+        Some(e) => {
+            Origin { xyz: numbers(e, "xyz", [0.0; 3], found), rpy: numbers(e, "rpy", [0.0; 3], found) }
+        }
     }
 }
 
@@ -165,15 +175,20 @@ fn shape(element: &Element, link: &str, found: &mut Diagnostics) -> Option<Shape
             if scale.contains(&0.0) {
                 let message = format!("a mesh of link `{link}` is scaled to nothing");
                 let span = element.attribute("scale").map_or(element.span, |a| a.span);
-                found.push(Diagnostic::error("R0231", message).at(span, "zero").expected("factors other than zero"));
+                found.push(
+                    Diagnostic::error("R0231", message).at(span, "zero").expected("factors other than zero"),
+                );
                 return None;
             }
             Some(ShapeDraft::Mesh { uri, scale })
         }
         other => {
-            let mut d = Diagnostic::error("R0231", format!("link `{link}` has a shape `{other}`, which URDF does not know"))
-                .at(element.span, "unknown shape")
-                .expected("box, cylinder, capsule, sphere or mesh");
+            let mut d = Diagnostic::error(
+                "R0231",
+                format!("link `{link}` has a shape `{other}`, which URDF does not know"),
+            )
+            .at(element.span, "unknown shape")
+            .expected("box, cylinder, capsule, sphere or mesh");
             if let Some(meant) = nearest(other, ["box", "cylinder", "capsule", "sphere", "mesh"]) {
                 d = d.hint(format!("did you mean `{meant}`?"));
             }
@@ -186,12 +201,19 @@ fn shape(element: &Element, link: &str, found: &mut Diagnostics) -> Option<Shape
 fn size_is_positive(x: f64, attribute: &crate::xml::Attribute, found: &mut Diagnostics) -> bool {
     if x <= 0.0 {
         let message = format!("`{}` is {x}; the shape is ignored", attribute.name);
-        found.push(Diagnostic::warning("R0231", message).at(attribute.span, "here").expected("a positive number"));
+        found.push(
+            Diagnostic::warning("R0231", message).at(attribute.span, "here").expected("a positive number"),
+        );
     }
     x > 0.0
 }
 
-fn inertial(element: &Element, link: &Name, masses: &mut Grouped, found: &mut Diagnostics) -> Option<Inertial> {
+fn inertial(
+    element: &Element,
+    link: &Name,
+    masses: &mut Grouped,
+    found: &mut Diagnostics,
+) -> Option<Inertial> {
     let mass = element.child("mass").and_then(|m| number(m, "value", found))?;
     if mass <= 0.0 {
         masses.add(link.span, &link.text);
@@ -210,7 +232,9 @@ fn joint(element: &Element, found: &mut Diagnostics) -> Option<JointDraft> {
     let mut end = |which: &str| {
         let Some(e) = element.child(which) else {
             let message = format!("{context} has no `<{which}>`");
-            found.push(Diagnostic::error("R0208", message).at(element.span, format!("`<{which}>` is missing")));
+            found.push(
+                Diagnostic::error("R0208", message).at(element.span, format!("`<{which}>` is missing")),
+            );
             return None;
         };
         named(e, "link", &context, found)

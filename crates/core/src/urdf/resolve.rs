@@ -33,10 +33,11 @@ pub(crate) fn resolve(
             return Some(Resolved { path: path.clone(), guessed: !exact });
         }
     }
-    candidates.iter().flat_map(|(path, _)| siblings(path)).find(|path| system.exists(path)).map(|path| Resolved {
-        path,
-        guessed: true,
-    })
+    candidates
+        .iter()
+        .flat_map(|(path, _)| siblings(path))
+        .find(|path| system.exists(path))
+        .map(|path| Resolved { path, guessed: true })
 }
 
 /// The folder of a package: given, or found above the description.

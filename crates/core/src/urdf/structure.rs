@@ -12,7 +12,9 @@ pub(super) fn check(draft: &mut Draft, found: &mut Diagnostics) {
         found.push(
             Diagnostic::error("R0207", format!("robot `{}` has no links", draft.name))
                 .at(draft.span, "nothing in here")
-                .hint("is this a fragment that another file includes, or a xacro file that was not expanded?"),
+                .hint(
+                    "is this a fragment that another file includes, or a xacro file that was not expanded?",
+                ),
         );
         return;
     }
@@ -32,8 +34,10 @@ fn unique_names(draft: &mut Draft, found: &mut Diagnostics) {
     let mut report = |what: &str, first: &Name, second: &Name, same: bool| {
         let message = format!("{what} `{}` is defined twice", first.text);
         found.push(match same {
-            true => Diagnostic::warning("R0213", format!("{message}, both times alike; the second is ignored"))
-                .at(second.span, "second definition"),
+            true => {
+                Diagnostic::warning("R0213", format!("{message}, both times alike; the second is ignored"))
+                    .at(second.span, "second definition")
+            }
             false => Diagnostic::error("R0213", message)
                 .at(second.span, "second definition")
                 .hint(format!("rename one of the two {what}s, or delete the one that is left over")),
@@ -75,9 +79,12 @@ fn declare_root_links(draft: &mut Draft, found: &mut Diagnostics) {
         _ => return,
     };
     found.push(
-        Diagnostic::warning("R0212", format!("root link `{}` is never declared; it is added without any shape", added.text))
-            .at(added.span, "used here")
-            .hint(format!("declare it: <link name=\"{}\"/>", added.text)),
+        Diagnostic::warning(
+            "R0212",
+            format!("root link `{}` is never declared; it is added without any shape", added.text),
+        )
+        .at(added.span, "used here")
+        .hint(format!("declare it: <link name=\"{}\"/>", added.text)),
     );
     draft.links.push(LinkDraft::bare(added));
 }
@@ -92,7 +99,8 @@ fn undeclared_links(draft: &Draft, found: &mut Diagnostics) -> bool {
                 continue;
             }
             any = true;
-            let message = format!("joint `{}` refers to link `{}`, which does not exist", joint.name.text, end.text);
+            let message =
+                format!("joint `{}` refers to link `{}`, which does not exist", joint.name.text, end.text);
             let mut d = Diagnostic::error("R0212", message).at(end.span, "no such link");
             d.hint = Some(match nearest(&end.text, declared.iter().copied()) {
                 Some(meant) => format!("did you mean `{meant}`?"),
@@ -110,8 +118,10 @@ fn two_parents(draft: &Draft, found: &mut Diagnostics) -> bool {
     for joint in &draft.joints {
         if let Some(first) = parent_of.insert(&joint.child.text, &joint.name.text) {
             any = true;
-            let message =
-                format!("link `{}` is the child of two joints, `{first}` and `{}`", joint.child.text, joint.name.text);
+            let message = format!(
+                "link `{}` is the child of two joints, `{first}` and `{}`",
+                joint.child.text, joint.name.text
+            );
             found.push(
                 Diagnostic::error("R0214", message)
                     .at(joint.child.span, "second parent")
@@ -159,8 +169,12 @@ fn roots(draft: &mut Draft, found: &mut Diagnostics) {
     if draft.links.iter().filter(|l| is_root(l)).count() < 2 {
         return;
     }
-    let trees: Vec<Name> =
-        draft.links.iter().filter(|l| is_root(l) && parents.contains(&l.name.text)).map(|l| l.name.clone()).collect();
+    let trees: Vec<Name> = draft
+        .links
+        .iter()
+        .filter(|l| is_root(l) && parents.contains(&l.name.text))
+        .map(|l| l.name.clone())
+        .collect();
     if let [_] = trees[..] {
         for stray in draft.links.iter().filter(|l| is_root(l) && !parents.contains(&l.name.text)) {
             let message = format!("link `{}` is joined to nothing; it is dropped", stray.name.text);
@@ -172,9 +186,12 @@ fn roots(draft: &mut Draft, found: &mut Diagnostics) {
     let roots: Vec<&Name> = draft.links.iter().filter(|l| is_root(l)).map(|l| &l.name).collect();
     let names: Vec<String> = roots.iter().map(|r| format!("`{}`", r.text)).collect();
     found.push(
-        Diagnostic::error("R0215", format!("the robot is in {} pieces, with the roots {}", roots.len(), names.join(", ")))
-            .at(roots[1].span, "nothing joins this link to the rest")
-            .hint("join the pieces by fixed joints, or put each into a file of its own"),
+        Diagnostic::error(
+            "R0215",
+            format!("the robot is in {} pieces, with the roots {}", roots.len(), names.join(", ")),
+        )
+        .at(roots[1].span, "nothing joins this link to the rest")
+        .hint("join the pieces by fixed joints, or put each into a file of its own"),
     );
 }
 
@@ -192,7 +209,9 @@ fn free_joints(draft: &mut Draft, found: &mut Diagnostics) {
                 JointKind::Planar => "write it as two prismatic joints and a revolute one",
                 _ => "write it as three prismatic and three revolute joints, or as a fixed one",
             };
-            found.push(Diagnostic::error("R0221", message).at(joint.name.span, "six unknowns at once").hint(hint));
+            found.push(
+                Diagnostic::error("R0221", message).at(joint.name.span, "six unknowns at once").hint(hint),
+            );
         } else {
             let message = format!("{kind} joint `{}` at the root is taken as fixed", joint.name.text);
             found.push(
@@ -232,10 +251,13 @@ fn mimics(draft: &mut Draft, found: &mut Diagnostics) {
             })
         };
         let fault = match kinds.get(target) {
-            None => format!("does not exist{}", match nearest(target, kinds.keys().map(String::as_str)) {
-                Some(meant) => format!(" (did you mean `{meant}`?)"),
-                None => String::new(),
-            }),
+            None => format!(
+                "does not exist{}",
+                match nearest(target, kinds.keys().map(String::as_str)) {
+                    Some(meant) => format!(" (did you mean `{meant}`?)"),
+                    None => String::new(),
+                }
+            ),
             Some(JointKind::Fixed) => "is fixed".to_owned(),
             Some(_) if circle() => "follows in a circle".to_owned(),
             Some(_) => continue,

@@ -10,7 +10,11 @@ use crate::system::{ReadError, System};
 /// The root element of the file at `path`, as far as it could be made out.
 ///
 /// The text goes to `sources` as decoded; all spans point into it.
-pub(crate) fn load(system: &dyn System, sources: &mut Sources, path: &Path) -> (Option<Element>, Diagnostics) {
+pub(crate) fn load(
+    system: &dyn System,
+    sources: &mut Sources,
+    path: &Path,
+) -> (Option<Element>, Diagnostics) {
     let bytes = match system.read(path) {
         Ok(bytes) => bytes,
         Err(error) => return (None, unreadable(path, &error)),

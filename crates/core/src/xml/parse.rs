@@ -34,7 +34,8 @@ pub(crate) fn parse(text: &str, file: FileId, limits: Limits) -> (Option<Element
         found: Diagnostics::new(),
     };
     if text.len() > limits.bytes {
-        let message = format!("the text is {} MB long; the most is {} MB", text.len() >> 20, limits.bytes >> 20);
+        let message =
+            format!("the text is {} MB long; the most is {} MB", text.len() >> 20, limits.bytes >> 20);
         parser.found.push(Diagnostic::error("R0206", message));
         return (None, parser.found);
     }
@@ -141,7 +142,11 @@ impl Parser<'_> {
         let (text, bad) = resolve_entities(raw);
         for offset in bad {
             let span = Span { file: self.file, start: start + offset, end: start + offset + 1 };
-            self.error(span, "no such entity", "`&` that names no character; write `&amp;` for the character");
+            self.error(
+                span,
+                "no such entity",
+                "`&` that names no character; write `&amp;` for the character",
+            );
         }
         text
     }
@@ -150,7 +155,11 @@ impl Parser<'_> {
         match self.scanner.take_past("-->") {
             Some(text) if text.contains("--") || text.ends_with('-') => {
                 let span = Span { file: self.file, start, end: start + 4 };
-                self.repaired(span, "this comment", "a comment must not contain `--`; it is skipped all the same");
+                self.repaired(
+                    span,
+                    "this comment",
+                    "a comment must not contain `--`; it is skipped all the same",
+                );
             }
             Some(_) => {}
             None => self.unfinished(start, "comment", "-->"),
@@ -167,14 +176,24 @@ impl Parser<'_> {
         let Some(text) = self.scanner.take_past("?>") else {
             return self.unfinished(start, "processing instruction", "?>");
         };
-        let Some(declaration) = text.strip_prefix("xml").filter(|t| t.starts_with(|c: char| c.is_whitespace())) else {
+        let Some(declaration) =
+            text.strip_prefix("xml").filter(|t| t.starts_with(|c: char| c.is_whitespace()))
+        else {
             return;
         };
         let span = self.scanner.span_from(start);
         if start != self.first {
-            self.repaired(span, "not at the start", "the XML declaration must be the first thing in a file; it is ignored here");
+            self.repaired(
+                span,
+                "not at the start",
+                "the XML declaration must be the first thing in a file; it is ignored here",
+            );
         } else if !["\"1.0\"", "'1.0'", "\"1.1\"", "'1.1'"].iter().any(|v| declaration.contains(v)) {
-            self.repaired(span, "unknown version", "this XML version does not exist; the file is read as XML 1.0");
+            self.repaired(
+                span,
+                "unknown version",
+                "this XML version does not exist; the file is read as XML 1.0",
+            );
         }
     }
 
@@ -225,7 +244,11 @@ impl Parser<'_> {
         let name_span = self.scanner.span_from(start);
         if name.is_empty() {
             let span = self.scanner.here();
-            self.error(span, "unexpected", format!("a character that belongs to no attribute of `<{}>`", element.name));
+            self.error(
+                span,
+                "unexpected",
+                format!("a character that belongs to no attribute of `<{}>`", element.name),
+            );
             self.scanner.advance(span.end - span.start);
             return;
         }
@@ -305,7 +328,8 @@ impl Parser<'_> {
             };
             self.error(span, "no such element is open", message);
             // A misspelt end tag is more likely than a stray one.
-            if self.open.last().is_some_and(|top| crate::diag::nearest(&name, [top.name.as_str()]).is_some()) {
+            if self.open.last().is_some_and(|top| crate::diag::nearest(&name, [top.name.as_str()]).is_some())
+            {
                 self.close_top();
             }
             return;
@@ -346,7 +370,11 @@ impl Parser<'_> {
                 self.comment(start);
             } else {
                 let span = self.scanner.here();
-                self.repaired(span, "from here on", "everything after the end of the root element is ignored");
+                self.repaired(
+                    span,
+                    "from here on",
+                    "everything after the end of the root element is ignored",
+                );
                 return;
             }
         }
