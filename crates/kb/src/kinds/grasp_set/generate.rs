@@ -1,10 +1,9 @@
 //! From approaches to a ranked grasp set.
 
-use nalgebra::{Point3, Unit};
-use rayon::prelude::*;
+use nalgebra::Point3;
 use robotc_core::geom::{ConvexParts, MeshIndex};
 use robotc_core::model::TriMesh;
-use robotc_planning::grasp::{Contact, Grasp, GraspSet};
+use robotc_planning::grasp::{Contact, Grasp};
 
 use super::closure::{ContactModel, PointContact, epsilon, wrenches};
 use super::contacts::{PatchOptions, patch};
@@ -48,95 +47,99 @@ pub struct Counts {
     pub closed: usize,
 }
 
-/// Tries all approaches. `progress` hears of the share done and may stop the work by returning false (then the result
-/// is `None`). The result does not depend on the number of threads.
-pub fn generate(
-    hand: &Hand,
-    mesh: &TriMesh,
-    parts: &ConvexParts,
-    centre_of_mass: Point3<f64>,
-    options: &GenerateOptions,
-    progress: impl Fn(f64) -> bool + Sync,
-) -> Option<(Vec<Grasp>, Counts)> {
-    let (low, high) = mesh.bounds()?;
-    let centre = nalgebra::center(&low, &high);
-    let radius = mesh.vertices.iter().map(|v| (v - centre).norm()).fold(0.0, f64::max);
-    let target = Target { parts, centre, radius };
-    let surface = sample(mesh, options.surface_spacing);
-    let length = surface.iter().map(|s| (s.point - centre_of_mass).norm()).fold(0.0, f64::max);
-    let model = ContactModel {
-        friction: options.friction,
-        cone_edges: options.cone_edges,
-        centre: centre_of_mass,
-        length: length.max(f64::MIN_POSITIVE),
-    };
-    let all = approaches(mesh, &MeshIndex::new(mesh), &options.approaches);
-    let done = std::sync::atomic::AtomicUsize::new(0);
-    let tried: Vec<Option<Trial>> = all
-        .par_iter()
-        .map(|approach| {
-            let trial = attempt(hand, &target, approach, &surface, &model, options);
-            let finished = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
-            (!finished.is_multiple_of(64) || progress(finished as f64 / all.len() as f64)).then_some(trial)
-        })
-        .collect();
-    let mut counts = Counts { tried: all.len(), ..Counts::default() };
-    let mut grasps = Vec::new();
-    for trial in tried {
-        match trial? {
-            Trial::Grasp(grasp) => {
-                counts.closed += 1;
-                grasps.push(*grasp);
-            }
-            Trial::NoClosure => counts.no_closure += 1,
-            Trial::Miss(Miss::NoTouch) => counts.no_touch += 1,
-            Trial::Miss(Miss::FewFingers) => counts.few_fingers += 1,
-            Trial::Miss(Miss::PalmTouches) => counts.palm += 1,
-        }
-    }
-    let mut grasps = GraspSet::new("", "", distinct(grasps)).grasps;
-    grasps.truncate(options.most_grasps);
-    Some((grasps, counts))
+/// Everything that trying an approach needs.
+pub struct Generator<'a> {
+    hand: &'a Hand<'a>,
+    target: Target<'a>,
+    surface: Vec<SurfacePoint>,
+    contact: ContactModel,
+    options: &'a GenerateOptions,
+    /// The approaches to try.
+    pub approaches: Vec<Approach>,
 }
 
-enum Trial {
+/// What became of one approach.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Trial {
+    /// Force closure.
     Grasp(Box<Grasp>),
+    /// The contacts do not close, or too weakly.
     NoClosure,
+    /// The strategy gave no closed hand.
     Miss(Miss),
 }
 
-fn attempt(
-    hand: &Hand,
-    target: &Target,
-    approach: &Approach,
-    surface: &[SurfacePoint],
-    model: &ContactModel,
-    options: &GenerateOptions,
-) -> Trial {
-    let closed = match close_on(hand, target, approach) {
-        Ok(closed) => closed,
-        Err(miss) => return Trial::Miss(miss),
-    };
-    let contacts = contacts_of(hand, &closed, surface, &options.patch);
-    match epsilon(&wrenches(&contacts, model)) {
-        Some(epsilon) if epsilon >= options.least_epsilon => {
-            let contacts = contacts
-                .iter()
-                .map(|c| Contact { point_in_object: c.point, normal_in_object: c.inward })
-                .collect();
-            let direction = closed.object_from_tool.rotation * hand.gripper().approach_in_tool;
-            Trial::Grasp(Box::new(Grasp {
-                preshape: approach.preshape,
-                object_from_tool: closed.object_from_tool,
-                approach_in_object: Unit::new_normalize(direction.into_inner()),
-                standoff: approach.standoff,
-                closed: closed.closed,
-                contacts,
-                epsilon,
-                score: epsilon,
-            }))
+impl<'a> Generator<'a> {
+    /// Prepares the trials. Mesh, parts and centre of mass are in the object frame. `None` when the mesh is empty.
+    pub fn new(
+        hand: &'a Hand<'a>,
+        mesh: &TriMesh,
+        parts: &'a ConvexParts,
+        centre_of_mass: Point3<f64>,
+        options: &'a GenerateOptions,
+    ) -> Option<Self> {
+        let (low, high) = mesh.bounds()?;
+        let centre = nalgebra::center(&low, &high);
+        let radius = mesh.vertices.iter().map(|v| (v - centre).norm()).fold(0.0, f64::max);
+        let surface = sample(mesh, options.surface_spacing);
+        let length = surface.iter().map(|s| (s.point - centre_of_mass).norm()).fold(0.0, f64::max);
+        let contact = ContactModel {
+            friction: options.friction,
+            cone_edges: options.cone_edges,
+            centre: centre_of_mass,
+            length: length.max(f64::MIN_POSITIVE),
+        };
+        let approaches = approaches(mesh, &MeshIndex::new(mesh), &options.approaches);
+        Some(Self { hand, target: Target { parts, centre, radius }, surface, contact, options, approaches })
+    }
+
+    /// Runs the grasp strategy along one approach and judges its contacts.
+    pub fn attempt(&self, approach: &Approach) -> Trial {
+        let closed = match close_on(self.hand, &self.target, approach) {
+            Ok(closed) => closed,
+            Err(miss) => return Trial::Miss(miss),
+        };
+        let contacts = contacts_of(self.hand, &closed, &self.surface, &self.options.patch);
+        let epsilon = match epsilon(&wrenches(&contacts, &self.contact)) {
+            Some(epsilon) if epsilon >= self.options.least_epsilon => epsilon,
+            _ => return Trial::NoClosure,
+        };
+        let contacts = contacts
+            .iter()
+            .map(|c| Contact { point_in_object: c.point, normal_in_object: c.inward })
+            .collect();
+        Trial::Grasp(Box::new(Grasp {
+            preshape: approach.preshape,
+            object_from_tool: closed.object_from_tool,
+            approach_in_object: closed.object_from_tool.rotation * self.hand.gripper().approach_in_tool,
+            standoff: approach.standoff,
+            closed: closed.closed,
+            contacts,
+            epsilon,
+            score: epsilon,
+        }))
+    }
+
+    /// The distinct grasps, best first, and what became of the rest; `trials` in the order of the approaches.
+    pub fn collect(&self, trials: Vec<Trial>) -> (Vec<Grasp>, Counts) {
+        let mut counts = Counts { tried: trials.len(), ..Counts::default() };
+        let mut grasps = Vec::new();
+        for trial in trials {
+            match trial {
+                Trial::Grasp(grasp) => {
+                    counts.closed += 1;
+                    grasps.push(*grasp);
+                }
+                Trial::NoClosure => counts.no_closure += 1,
+                Trial::Miss(Miss::NoTouch) => counts.no_touch += 1,
+                Trial::Miss(Miss::FewFingers) => counts.few_fingers += 1,
+                Trial::Miss(Miss::PalmTouches) => counts.palm += 1,
+            }
         }
-        _ => Trial::NoClosure,
+        let mut grasps = distinct(grasps);
+        grasps.sort_by(|a, b| b.score.total_cmp(&a.score));
+        grasps.truncate(self.options.most_grasps);
+        (grasps, counts)
     }
 }
 
@@ -249,7 +252,9 @@ mod tests {
         let part = box_part(Vector3::from(size));
         let mesh = part.mesh();
         let object = ConvexParts::new(vec![part]);
-        generate(&hand, &mesh, &object, Point3::origin(), &options(), |_| true).unwrap()
+        let options = options();
+        let generator = Generator::new(&hand, &mesh, &object, Point3::origin(), &options).unwrap();
+        generator.collect(generator.approaches.iter().map(|a| generator.attempt(a)).collect())
     }
 
     #[test]
@@ -271,17 +276,5 @@ mod tests {
     fn a_box_wider_than_the_jaws_cannot_be_held() {
         let (grasps, counts) = grasps_of([0.1, 0.1, 0.1]);
         assert!(grasps.is_empty() && counts.tried > 0, "{counts:?}");
-    }
-
-    #[test]
-    fn threads_do_not_change_the_set() {
-        let run = |threads| {
-            rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .unwrap()
-                .install(|| grasps_of([0.05, 0.1, 0.06]))
-        };
-        assert_eq!(run(1), run(2));
     }
 }

@@ -1,7 +1,6 @@
 //! Fills a reachability map: exact inverse kinematics at the centre of each cell, limits, self-collision.
 
 use nalgebra::Vector3;
-use rayon::prelude::*;
 use robotc_core::Pose;
 use robotc_core::ik::{IkSolutions, InverseKinematics};
 use robotc_core::model::SerialChain;
@@ -15,106 +14,104 @@ pub struct SearchOptions {
     pub free_samples: usize,
 }
 
-/// Fills the map. `collides` says whether the arm at these joint values touches itself; `progress` hears of each
-/// finished radial row and may stop the work by returning false (then the result is `None`).
+/// Everything that looking at a cell needs.
 ///
 /// The first joint's own limits are left to queries, since a turn about the first axis turns the pose with it; for
 /// self-collision it stands as near as its limits allow.
-pub fn fill(
-    chain: &SerialChain,
-    solver: &dyn InverseKinematics,
+pub struct Search<'a, C> {
+    chain: &'a SerialChain,
+    solver: &'a dyn InverseKinematics,
+    collides: C,
     grid: Grid,
-    options: &SearchOptions,
-    collides: impl Fn(&[f64]) -> bool + Sync,
-    progress: impl Fn(f64) -> bool + Sync,
-) -> Option<ReachabilityMap> {
-    let free = free_values(chain, solver.free_variables(), options.free_samples);
-    let tries = free.len().min(usize::from(u8::MAX));
-    let radius = reach(chain);
-    let row = grid.vertical * grid.rotations().len();
-    let done = std::sync::atomic::AtomicUsize::new(0);
-    let rows: Vec<Option<Row>> = (0..grid.radial)
-        .into_par_iter()
-        .map(|r| {
-            let mut filled = Row::default();
-            let mut solutions = IkSolutions::new();
-            for cell in r * row..(r + 1) * row {
-                let centre = grid.centre(cell);
-                let found = if out_of_reach(chain, &centre, radius) {
-                    None
-                } else {
-                    look(chain, solver, &centre, &free[..tries], &mut solutions, &collides)
-                };
-                let (count, witness) = found.unwrap_or_default();
-                filled.counts.push(count);
-                filled.witnesses.extend(witness);
-            }
-            let finished = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
-            progress(finished as f64 / grid.radial as f64).then_some(filled)
-        })
-        .collect();
-    let (mut counts, mut witnesses) = (Vec::with_capacity(grid.len()), Vec::new());
-    for row in rows {
-        let row = row?;
-        counts.extend(row.counts);
-        witnesses.extend(row.witnesses);
-    }
-    let first = &chain.variables[chain.joints[0].variable];
-    let map = ReachabilityMap::new(
-        grid,
-        tries as u8,
-        counts,
-        witnesses,
-        chain.variables.len(),
-        (first.lower, first.upper),
-    );
-    Some(map.expect("each cell with a count has a witness"))
+    free: Vec<Vec<f64>>,
+    radius: f64,
 }
 
-#[derive(Default)]
-struct Row {
+/// The cells at one distance from the axis.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Row {
     counts: Vec<u8>,
     witnesses: Vec<f32>,
+}
+
+impl<'a, C: Fn(&[f64]) -> bool> Search<'a, C> {
+    /// A search over `grid`; `collides` says whether the arm at these joint values touches itself.
+    pub fn new(
+        chain: &'a SerialChain,
+        solver: &'a dyn InverseKinematics,
+        grid: Grid,
+        options: &SearchOptions,
+        collides: C,
+    ) -> Self {
+        let mut free = free_values(chain, solver.free_variables(), options.free_samples);
+        free.truncate(usize::from(u8::MAX));
+        Self { chain, solver, collides, grid, free, radius: reach(chain) }
+    }
+
+    /// Looks at all cells of a row: `r` below `grid.radial`.
+    pub fn row(&self, r: usize) -> Row {
+        let cells = self.grid.vertical * self.grid.rotations().len();
+        let mut row = Row::default();
+        let mut solutions = IkSolutions::new();
+        for cell in r * cells..(r + 1) * cells {
+            let centre = self.grid.centre(cell);
+            let (count, witness) = self.look(&centre, &mut solutions).unwrap_or_default();
+            row.counts.push(count);
+            row.witnesses.extend(witness);
+        }
+        row
+    }
+
+    /// The map of all rows, in order.
+    pub fn assemble(self, rows: Vec<Row>) -> ReachabilityMap {
+        let mut counts = Vec::with_capacity(self.grid.len());
+        let mut witnesses = Vec::new();
+        for row in rows {
+            counts.extend(row.counts);
+            witnesses.extend(row.witnesses);
+        }
+        let first = &self.chain.variables[self.chain.joints[0].variable];
+        let variables = self.chain.variables.len();
+        let limits = (first.lower, first.upper);
+        ReachabilityMap::new(self.grid, self.free.len() as u8, counts, witnesses, variables, limits)
+            .expect("each cell with a count has a witness")
+    }
+
+    /// How many tries reach the pose, and the joint vector nearest to the middle of all limits.
+    fn look(&self, base_from_tip: &Pose, solutions: &mut IkSolutions) -> Option<(u8, Vec<f32>)> {
+        if out_of_reach(self.chain, base_from_tip, self.radius) {
+            return None;
+        }
+        let mut count = 0;
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for values in &self.free {
+            self.solver.solve(base_from_tip, values, solutions);
+            let mut reached = false;
+            for solution in solutions.iter() {
+                let Some((mut joints, off_middle)) = within_limits(self.chain, solution) else { continue };
+                let first = joints[0];
+                let limits = &self.chain.variables[0];
+                joints[0] = first.clamp(limits.lower, limits.upper);
+                // Only a try that is not reached yet, or a better witness, is worth a collision test.
+                let better = best.as_ref().is_none_or(|(cost, _)| off_middle < *cost);
+                if (reached && !better) || (self.collides)(&joints) {
+                    continue;
+                }
+                reached = true;
+                if better {
+                    joints[0] = first;
+                    best = Some((off_middle, joints));
+                }
+            }
+            count += u8::from(reached);
+        }
+        best.map(|(_, joints)| (count, joints.iter().map(|&x| x as f32).collect()))
+    }
 }
 
 fn out_of_reach(chain: &SerialChain, base_from_tip: &Pose, radius: f64) -> bool {
     let shoulder = chain.joints[0].previous_from_joint.translation.vector;
     (base_from_tip.translation.vector - shoulder).norm() > radius
-}
-
-/// How many tries reach the pose, and the joint vector nearest to the middle of all limits.
-fn look(
-    chain: &SerialChain,
-    solver: &dyn InverseKinematics,
-    base_from_tip: &Pose,
-    free: &[Vec<f64>],
-    solutions: &mut IkSolutions,
-    collides: &(impl Fn(&[f64]) -> bool + Sync),
-) -> Option<(u8, Vec<f32>)> {
-    let mut count = 0;
-    let mut best: Option<(f64, Vec<f64>)> = None;
-    for values in free {
-        solver.solve(base_from_tip, values, solutions);
-        let mut reached = false;
-        for solution in solutions.iter() {
-            let Some((mut joints, off_middle)) = within_limits(chain, solution) else { continue };
-            let first = joints[0];
-            let limits = &chain.variables[0];
-            joints[0] = first.clamp(limits.lower, limits.upper);
-            // Only a try that is not reached yet, or a better witness, is worth a collision test.
-            let better = best.as_ref().is_none_or(|(cost, _)| off_middle < *cost);
-            if (reached && !better) || collides(&joints) {
-                continue;
-            }
-            reached = true;
-            if better {
-                joints[0] = first;
-                best = Some((off_middle, joints));
-            }
-        }
-        count += u8::from(reached);
-    }
-    best.map(|(_, joints)| (count, joints.iter().map(|&x| x as f32).collect()))
 }
 
 /// The joint vector with every joint but the first brought within its limits by full turns, and how far it is from the
