@@ -2,7 +2,9 @@
 //!
 //! Planners work on a [`Space`] and an [`EdgeChecker`] and never see a robot.
 
+pub mod arm;
 pub mod budget;
+pub mod cartesian;
 pub mod constraint;
 pub mod edge;
 pub mod goal;
@@ -10,11 +12,15 @@ pub mod grasp;
 pub mod rrt;
 pub mod smooth;
 pub mod space;
+#[cfg(test)]
+mod testbed;
 pub mod timing;
 #[cfg(test)]
 mod toy;
 
+pub use arm::{ArmError, ArmModel};
 pub use budget::{Budget, Interrupt};
+pub use cartesian::{LineFailure, LineObstacle, LineOptions, cartesian_line};
 pub use constraint::Constraint;
 pub use edge::{Blocked, EdgeChecker, Obstruction};
 pub use goal::{FixedGoals, GoalDraw, GoalSampler};

@@ -1,0 +1,304 @@
+//! An arm as planners need it: its configuration space, limits, tool pose and inverse kinematics.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use nalgebra::{Matrix6, Matrix6xX, SVector, Vector6};
+use robotc_core::ik::{IkSolutions, InverseKinematics};
+use robotc_core::model::{ChainError, ChainMotion};
+use robotc_core::robot::Robot;
+use robotc_core::{Configuration, DofIdx, Kinematics, Pose, SerialChain};
+use thiserror::Error;
+
+use crate::space::{Axis, Space};
+use crate::timing::MotionLimits;
+
+/// Why an arm cannot be planned for.
+#[derive(Debug, Clone, Error, PartialEq, Eq)]
+pub enum ArmError {
+    /// Base and tip span no chain.
+    #[error(transparent)]
+    Chain(#[from] ChainError),
+    /// The solver was made for another chain.
+    #[error("the inverse kinematics has {found} variables, the arm {expected}")]
+    Variables {
+        /// Of the solver.
+        found: usize,
+        /// Of the arm.
+        expected: usize,
+    },
+}
+
+/// A placed arm with its tool. Joint vectors are in the order of [`dofs`](Self::dofs), base to tip.
+#[derive(Clone)]
+pub struct ArmModel {
+    chain: SerialChain,
+    dofs: Vec<DofIdx>,
+    names: Vec<String>,
+    /// Whether each variable is an angle.
+    turns: Vec<bool>,
+    ik: Arc<dyn InverseKinematics>,
+    space: Space,
+    limits: MotionLimits,
+    world_from_base: Pose,
+    tip_from_tool: Pose,
+}
+
+impl ArmModel {
+    /// Arm number `arm` of a robot that stands at `world_from_robot`, its other joints as in `q`.
+    ///
+    /// The tool is that of the arm's gripper, or else the tip link. `weights`, in the order of the arm's degrees of
+    /// freedom, are those of the metric.
+    pub fn new(
+        robot: &Robot,
+        kinematics: &Kinematics,
+        arm: usize,
+        ik: Arc<dyn InverseKinematics>,
+        weights: &[f64],
+        world_from_robot: &Pose,
+        q: &Configuration,
+    ) -> Result<Self, ArmError> {
+        let (model, arm) = (kinematics.model(), &robot.arms[arm]);
+        let chain = SerialChain::between(kinematics, arm.base, arm.tip)?;
+        let found = ik.variables();
+        if found != chain.variables.len() {
+            return Err(ArmError::Variables { found, expected: chain.variables.len() });
+        }
+        let dofs: Vec<DofIdx> = chain.variables.iter().map(|v| v.dof).collect();
+        let axis = |(&dof, &weight): (&DofIdx, &f64)| {
+            let d = &model.dofs()[dof];
+            Axis { lower: d.lower, upper: d.upper, wraps: d.continuous, weight }
+        };
+        let dynamics = |dof: &DofIdx| model.dofs()[*dof].dynamics;
+        let limits = MotionLimits {
+            velocity: dofs.iter().map(|d| dynamics(d).velocity).collect(),
+            acceleration: dofs.iter().map(|d| dynamics(d).acceleration).collect(),
+        };
+        let tip_from_tool = arm.gripper.map_or_else(Pose::identity, |g| {
+            let gripper = &robot.grippers[g];
+            let root_from_tip = kinematics.root_from_link(q, arm.tip);
+            root_from_tip.inv_mul(&kinematics.root_from_link(q, gripper.palm)) * gripper.palm_from_tool
+        });
+        let mut turns = vec![false; chain.variables.len()];
+        for joint in &chain.joints {
+            turns[joint.variable] = joint.motion == ChainMotion::Revolute;
+        }
+        Ok(Self {
+            turns,
+            names: dofs.iter().map(|&d| model.dofs()[d].name.clone()).collect(),
+            space: Space::new(dofs.iter().zip(weights).map(axis).collect()),
+            world_from_base: world_from_robot * kinematics.root_from_link(q, arm.base),
+            chain,
+            dofs,
+            ik,
+            limits,
+            tip_from_tool,
+        })
+    }
+
+    /// The degrees of freedom, base to tip.
+    pub fn dofs(&self) -> &[DofIdx] {
+        &self.dofs
+    }
+
+    /// Their joint names.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The configuration space.
+    pub fn space(&self) -> &Space {
+        &self.space
+    }
+
+    /// Speed limits.
+    pub fn limits(&self) -> &MotionLimits {
+        &self.limits
+    }
+
+    /// `world_from_tool` at `q`.
+    pub fn world_from_tool(&self, q: &[f64]) -> Pose {
+        self.world_from_base * self.chain.forward(q) * self.tip_from_tool
+    }
+
+    /// Derivative of the tool's pose at `q`: linear velocity of the tool's origin, then angular velocity, in world
+    /// axes; one column for each variable.
+    pub fn tool_jacobian(&self, q: &[f64]) -> Matrix6xX<f64> {
+        let tool_in_world = self.world_from_tool(q).translation.vector;
+        let mut jacobian = Matrix6xX::zeros(q.len());
+        let mut pose = self.world_from_base;
+        for joint in &self.chain.joints {
+            pose *= joint.previous_from_joint;
+            let value = joint.multiplier * q[joint.variable] + joint.offset;
+            let axis = pose.rotation * joint.axis.into_inner();
+            let (linear, angular) = match joint.motion {
+                ChainMotion::Revolute => {
+                    let linear = axis.cross(&(tool_in_world - pose.translation.vector));
+                    pose.rotation *= nalgebra::UnitQuaternion::from_axis_angle(&joint.axis, value);
+                    (linear, axis)
+                }
+                ChainMotion::Prismatic => {
+                    pose.translation.vector += axis * value;
+                    (axis, axis * 0.0)
+                }
+            };
+            let mut column = jacobian.column_mut(joint.variable);
+            for row in 0..3 {
+                column[row] += joint.multiplier * linear[row];
+                column[row + 3] += joint.multiplier * angular[row];
+            }
+        }
+        jacobian
+    }
+
+    /// The small motion that moves the tool by `twist` (linear and angular, world axes): damped least squares, so that
+    /// it stays bounded near singular configurations.
+    pub fn follow(&self, q: &[f64], twist: &Vector6<f64>) -> Vec<f64> {
+        const DAMPING: f64 = 1e-6;
+        let jacobian = self.tool_jacobian(q);
+        let gram = &jacobian * jacobian.transpose() + Matrix6::identity() * DAMPING;
+        let multipliers: SVector<f64, 6> = match gram.cholesky() {
+            Some(cholesky) => cholesky.solve(twist),
+            None => Vector6::zeros(),
+        };
+        (jacobian.transpose() * multipliers).iter().copied().collect()
+    }
+
+    /// Positions of the variables that the caller of [`inverse`](Self::inverse) chooses.
+    pub fn free_variables(&self) -> &[usize] {
+        self.ik.free_variables()
+    }
+
+    /// All joint vectors within the limits that put the tool at `world_from_tool`, the free variables as in `free`,
+    /// nearest to `near` first (ties in solver order).
+    ///
+    /// Each angle is the one of its aliases 2 pi apart that is within the limits and nearest to `near`. The second
+    /// value counts solutions outside of the limits.
+    pub fn inverse(
+        &self,
+        world_from_tool: &Pose,
+        free: &[f64],
+        near: &[f64],
+        scratch: &mut IkSolutions,
+    ) -> (Vec<Vec<f64>>, usize) {
+        let world_from_tip = world_from_tool * self.tip_from_tool.inverse();
+        self.ik.solve(&self.world_from_base.inv_mul(&world_from_tip), free, scratch);
+        let mut outside = 0;
+        let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
+        for solution in scratch.iter() {
+            let values = self.space.axes().iter().zip(&self.turns).zip(solution.iter().zip(near));
+            let within: Option<Vec<f64>> = values
+                .map(
+                    |((axis, &turns), (&value, &near))| {
+                        if turns { nearest_alias(axis, value, near) } else { within(axis, value) }
+                    },
+                )
+                .collect();
+            match within {
+                Some(q) => found.push((self.space.squared_distance(&q, near), q)),
+                None => outside += 1,
+            }
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        (found.into_iter().map(|(_, q)| q).collect(), outside)
+    }
+}
+
+/// Rounding at a limit is not a violation.
+const LIMIT_SLACK: f64 = 1e-9;
+
+fn within(axis: &Axis, value: f64) -> Option<f64> {
+    let inside = axis.lower - LIMIT_SLACK <= value && value <= axis.upper + LIMIT_SLACK;
+    inside.then(|| value.clamp(axis.lower, axis.upper))
+}
+
+/// The angle equal to `value` modulo 2 pi that is within the limits and nearest to `near`.
+fn nearest_alias(axis: &Axis, value: f64, near: f64) -> Option<f64> {
+    if axis.wraps {
+        return Some(value);
+    }
+    let best = value + TAU * ((near - value) / TAU).round();
+    let mut found: Option<f64> = None;
+    // The nearest may be outside and another alias inside, on the side where the limits are.
+    let first = ((axis.lower - LIMIT_SLACK - best) / TAU).ceil() as i64;
+    let last = ((axis.upper + LIMIT_SLACK - best) / TAU).floor() as i64;
+    for turns in first.max(-8)..=last.min(8) {
+        if let Some(alias) = within(axis, best + TAU * turns as f64) {
+            if found.is_none_or(|f| (alias - near).abs() < (f - near).abs()) {
+                found = Some(alias);
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testbed::{self, REST};
+    use proptest::prelude::*;
+
+    #[test]
+    fn aliases_keep_to_the_limits() {
+        let axis = Axis::bounded(-4.0, 4.0);
+        assert_eq!(nearest_alias(&axis, 3.0, -3.0), Some(3.0 - TAU));
+        assert_eq!(nearest_alias(&axis, 3.0, 2.0), Some(3.0));
+        assert_eq!(nearest_alias(&Axis::bounded(3.5, 6.0), -1.0, 0.0), Some(TAU - 1.0));
+        assert_eq!(nearest_alias(&Axis::bounded(-1.0, 1.0), 2.0, 0.0), None);
+        assert_eq!(nearest_alias(&Axis::bounded(-1.0, 1.0), 1.0 + 1e-12, 0.0), Some(1.0));
+    }
+
+    #[test]
+    fn the_jacobian_is_the_derivative_of_the_tool_pose() {
+        let arm = testbed::arm(true);
+        let q = [0.1, 0.3, -0.6, 1.1, 0.4, 0.7, -0.2];
+        let jacobian = arm.tool_jacobian(&q);
+        for i in 0..7 {
+            let moved = |d: f64| {
+                let mut q = q;
+                q[i] += d;
+                arm.world_from_tool(&q)
+            };
+            let (a, b) = (moved(-1e-6), moved(1e-6));
+            let linear = (b.translation.vector - a.translation.vector) / 2e-6;
+            let angular = (b.rotation * a.rotation.inverse()).scaled_axis() / 2e-6;
+            for row in 0..3 {
+                assert!((jacobian[(row, i)] - linear[row]).abs() < 1e-6);
+                assert!((jacobian[(row + 3, i)] - angular[row]).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn small_motions_follow_the_twist() {
+        let arm = testbed::arm(false);
+        let twist = Vector6::new(1e-4, -2e-4, 1e-4, 2e-4, 1e-4, -1e-4);
+        let step = arm.follow(&REST, &twist);
+        let moved: Vec<f64> = REST.iter().zip(&step).map(|(q, d)| q + d).collect();
+        let (a, b) = (arm.world_from_tool(&REST), arm.world_from_tool(&moved));
+        let linear = b.translation.vector - a.translation.vector;
+        assert!((linear - twist.fixed_rows::<3>(0)).norm() < 1e-6);
+        let angular = (b.rotation * a.rotation.inverse()).scaled_axis();
+        assert!((angular - twist.fixed_rows::<3>(3)).norm() < 1e-6);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn inverse_solutions_reach_the_pose_and_recover_the_joints(
+            q in prop::array::uniform6(-1.9..1.9f64),
+            rail in -0.4..0.4f64,
+        ) {
+            let arm = testbed::arm(true);
+            let q = [rail, q[0], q[1], q[2], q[3], q[4], q[5]];
+            let pose = arm.world_from_tool(&q);
+            let (solutions, _) = arm.inverse(&pose, &[rail], &q, &mut IkSolutions::new());
+            prop_assert!(!solutions.is_empty());
+            for s in &solutions {
+                prop_assert!((arm.world_from_tool(s).to_homogeneous() - pose.to_homogeneous()).norm() < 1e-8);
+                prop_assert!(arm.space().contains(s));
+            }
+            prop_assert!(solutions[0].iter().zip(&q).all(|(a, b)| (a - b).abs() < 1e-5), "{:?} {q:?}", solutions[0]);
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! A small arm with closed-form inverse kinematics for tests: shoulder, elbow, spherical wrist, two-finger gripper,
+//! and if wanted a rail under it that makes it redundant.
+
+use std::sync::Arc;
+
+use nalgebra::{Rotation3, Vector3};
+use robotc_core::ik::{IkSolutions, InverseKinematics};
+use robotc_core::model::{DynamicLimits, Geometry, JointMotion, Origin, RobotBuilder, RobotModel, Shape};
+use robotc_core::robot::{Arm, Base, Gripper, Preshape, Robot};
+use robotc_core::{Configuration, Kinematics, Pose};
+
+use crate::arm::ArmModel;
+
+const SHOULDER: f64 = 0.4;
+const UPPER: f64 = 0.5;
+const FORE: f64 = 0.5;
+const HAND: f64 = 0.1;
+/// From the hand to the point between the finger tips.
+const TOOL: f64 = 0.12;
+/// Half the opening of the fingers.
+pub(crate) const OPEN: f64 = 0.05;
+
+/// A bent configuration with the tool pointing forward and down (without the rail).
+pub(crate) const REST: [f64; 6] = [0.0, -0.6, 1.4, 0.0, 0.8, 0.0];
+
+fn shape(xyz: [f64; 3], size: [f64; 3]) -> Vec<Geometry> {
+    let origin = Origin { xyz, rpy: [0.0; 3] };
+    vec![Geometry { origin, shape: Shape::Box { size }, colour: None }]
+}
+
+fn limits(range: f64) -> (f64, f64, bool, DynamicLimits) {
+    let dynamics = DynamicLimits { velocity: 2.0, acceleration: 8.0, ..DynamicLimits::DEFAULT };
+    (-range, range, false, dynamics)
+}
+
+/// The arm: x forward when straight, joints about z, y, y, x, y, x.
+pub(crate) fn model(rail: bool) -> RobotModel {
+    let mut b = RobotBuilder::new("testbed");
+    b.link("base", vec![], shape([0.0, 0.0, 0.15], [0.15, 0.15, 0.3]), None);
+    b.link("column", vec![], vec![], None);
+    b.link("shoulder", vec![], shape([0.0, 0.0, -0.02], [0.08, 0.08, 0.08]), None);
+    b.link("upper", vec![], shape([0.5 * UPPER, 0.0, 0.0], [UPPER - 0.12, 0.08, 0.08]), None);
+    b.link("fore", vec![], shape([0.5 * FORE, 0.0, 0.0], [FORE - 0.12, 0.06, 0.06]), None);
+    b.link("wrist1", vec![], vec![], None);
+    b.link("wrist2", vec![], shape([0.0; 3], [0.05, 0.05, 0.05]), None);
+    b.link("hand", vec![], shape([0.5 * HAND, 0.0, 0.0], [0.04, 0.12, 0.05]), None);
+    let finger = |y: f64| shape([HAND + 0.5 * TOOL - 0.02, y, 0.0], [TOOL, 0.01, 0.02]);
+    b.link("left", vec![], finger(0.005), None);
+    b.link("right", vec![], finger(-0.005), None);
+    let at = |x: f64, z: f64| Origin { xyz: [x, 0.0, z], rpy: [0.0; 3] };
+    if rail {
+        b.moving(
+            "rail",
+            JointMotion::Prismatic,
+            "base",
+            "column",
+            at(0.0, 0.0),
+            [0.0, 1.0, 0.0],
+            limits(0.5),
+            None,
+        );
+    } else {
+        b.fixed("rail", "base", "column", at(0.0, 0.0));
+    }
+    let mut revolute = |name: &str, parent: &str, child: &str, origin, axis, range| {
+        b.moving(name, JointMotion::Revolute, parent, child, origin, axis, limits(range), None);
+    };
+    revolute("j1", "column", "shoulder", at(0.0, SHOULDER), [0.0, 0.0, 1.0], 3.0);
+    revolute("j2", "shoulder", "upper", at(0.0, 0.0), [0.0, 1.0, 0.0], 2.5);
+    revolute("j3", "upper", "fore", at(UPPER, 0.0), [0.0, 1.0, 0.0], 2.7);
+    revolute("j4", "fore", "wrist1", at(FORE, 0.0), [1.0, 0.0, 0.0], 4.0);
+    revolute("j5", "wrist1", "wrist2", at(0.0, 0.0), [0.0, 1.0, 0.0], 2.2);
+    revolute("j6", "wrist2", "hand", at(0.0, 0.0), [1.0, 0.0, 0.0], 4.0);
+    let opening =
+        (0.0, OPEN, false, DynamicLimits { velocity: 0.2, acceleration: 1.0, ..DynamicLimits::DEFAULT });
+    b.moving("finger", JointMotion::Prismatic, "hand", "left", at(0.0, 0.0), [0.0, 1.0, 0.0], opening, None);
+    let follow = Some(("finger".to_owned(), -1.0, 0.0));
+    b.moving(
+        "finger2",
+        JointMotion::Prismatic,
+        "hand",
+        "right",
+        at(0.0, 0.0),
+        [0.0, 1.0, 0.0],
+        opening,
+        follow,
+    );
+    b.build().expect("the test arm is a robot")
+}
+
+/// The arm with its gripper, resting at [`REST`].
+pub(crate) fn robot(rail: bool) -> Robot {
+    let model = model(rail);
+    let link = |name: &str| model.link_named(name).expect("a link of the test arm");
+    let dof = |name: &str| model.dof_named(name).expect("a joint of the test arm");
+    let names = ["rail", "j1", "j2", "j3", "j4", "j5", "j6"];
+    let dofs = names.iter().filter_map(|n| model.dof_named(n)).collect();
+    let home = if rail { [&[0.0], &REST[..]].concat() } else { REST.to_vec() };
+    let adjacent = [("base", "shoulder"), ("shoulder", "upper"), ("upper", "fore"), ("fore", "wrist2")];
+    let hand = [("fore", "hand"), ("wrist2", "hand"), ("hand", "left"), ("hand", "right"), ("left", "right")];
+    let mut ignored_pairs: Vec<_> = adjacent
+        .iter()
+        .chain(&hand)
+        .map(|(a, b)| (link(a).min(link(b)), link(a).max(link(b))))
+        .chain([(link("wrist2"), link("left")), (link("wrist2"), link("right"))])
+        .collect();
+    ignored_pairs.sort();
+    Robot {
+        arms: vec![Arm {
+            name: "arm".into(),
+            base: link("base"),
+            tip: link("hand"),
+            dofs,
+            gripper: Some(0),
+            free: rail.then(|| vec![dof("rail")]),
+            home: Some(home),
+        }],
+        grippers: vec![Gripper {
+            name: "hand".into(),
+            palm: link("hand"),
+            palm_from_tool: Pose::translation(HAND + TOOL - 0.04, 0.0, 0.0),
+            approach_in_tool: Vector3::x_axis(),
+            dofs: vec![dof("finger")],
+            closing: vec![-1.0],
+            fingers: vec![link("left"), link("right")],
+            preshapes: vec![Preshape { name: "open".into(), values: vec![OPEN] }],
+        }],
+        cameras: vec![],
+        base: Base::Fixed,
+        ignored_pairs,
+        weights: vec![],
+        model: Arc::new(model),
+    }
+}
+
+/// Everything at rest, fingers open.
+pub(crate) fn rest(robot: &Robot) -> Configuration {
+    let mut q = Configuration::neutral(&robot.model);
+    q.set(&robot.arms[0].dofs, robot.arms[0].home.as_ref().expect("the test arm has a home"));
+    q.set(&robot.grippers[0].dofs, &[OPEN]);
+    q
+}
+
+/// The arm at the world's origin.
+pub(crate) fn arm(rail: bool) -> ArmModel {
+    let robot = robot(rail);
+    let kinematics = Kinematics::new(robot.model.clone());
+    let weights = vec![1.0; robot.arms[0].dofs.len()];
+    let ik = Arc::new(ClosedForm { rail });
+    ArmModel::new(&robot, &kinematics, 0, ik, &weights, &Pose::identity(), &rest(&robot))
+        .expect("the test arm has a chain")
+}
+
+/// Wrist centre by law of cosines, then the wrist's rotation as x, y, x angles.
+pub(crate) struct ClosedForm {
+    pub(crate) rail: bool,
+}
+
+impl InverseKinematics for ClosedForm {
+    fn variables(&self) -> usize {
+        if self.rail { 7 } else { 6 }
+    }
+
+    fn free_variables(&self) -> &[usize] {
+        if self.rail { &[0] } else { &[] }
+    }
+
+    fn solve(&self, base_from_tip: &Pose, free: &[f64], out: &mut IkSolutions) {
+        out.reset(self.variables());
+        let p = base_from_tip.translation.vector - Vector3::y() * free.first().copied().unwrap_or(0.0);
+        let yaw = p.y.atan2(p.x);
+        let z = p.z - SHOULDER;
+        for (q1, r) in [(yaw, p.x.hypot(p.y)), (flip(yaw), -p.x.hypot(p.y))] {
+            let cos3 = (r * r + z * z - UPPER * UPPER - FORE * FORE) / (2.0 * UPPER * FORE);
+            if cos3.abs() > 1.0 {
+                continue;
+            }
+            for q3 in [cos3.acos(), -cos3.acos()] {
+                // Pitch turns x down: the point at angle q in the plane is (cos q, -sin q).
+                let q2 = (-z).atan2(r) - (FORE * q3.sin()).atan2(UPPER + FORE * q3.cos());
+                let q2 = q2.sin().atan2(q2.cos());
+                let turned = Rotation3::from_axis_angle(&Vector3::z_axis(), q1)
+                    * Rotation3::from_axis_angle(&Vector3::y_axis(), q2 + q3);
+                let m = turned.inverse() * base_from_tip.rotation.to_rotation_matrix();
+                let q5 = m[(0, 0)].clamp(-1.0, 1.0).acos();
+                let (q4, q6) = (m[(1, 0)].atan2(-m[(2, 0)]), m[(0, 1)].atan2(m[(0, 2)]));
+                for wrist in [[q4, q5, q6], [flip(q4), -q5, flip(q6)]] {
+                    let all =
+                        [free.first().copied().unwrap_or(0.0), q1, q2, q3, wrist[0], wrist[1], wrist[2]];
+                    out.push(&all[usize::from(!self.rail)..]);
+                }
+            }
+        }
+    }
+}
+
+fn flip(angle: f64) -> f64 {
+    if angle > 0.0 { angle - std::f64::consts::PI } else { angle + std::f64::consts::PI }
+}
