@@ -7,6 +7,7 @@ mod objects;
 mod panda;
 mod part;
 mod shape;
+mod ur5e;
 
 use std::path::{Path, PathBuf};
 
@@ -42,7 +43,7 @@ pub(crate) fn run(args: &[String]) -> anyhow::Result<()> {
 /// All files: path below `specs/` and text.
 fn files() -> Vec<(PathBuf, String)> {
     let mut all = Vec::new();
-    for (robot, parts) in [("panda", panda::parts())] {
+    for (robot, parts) in [("panda", panda::parts()), ("ur5e", ur5e::parts())] {
         let folder = PathBuf::from("robots").join(robot).join("meshes");
         for part in parts {
             all.extend(part.files().map(|(name, mesh)| (folder.join(name + ".obj"), obj::text(mesh))));

@@ -3,27 +3,13 @@
 //! Each pitch joint (2, 4, 6) is a drum cut in two halves: one on the parent, one on the child. The limbs between
 //! swing from the middle of the arm to their half of the drum and back.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::FRAC_PI_4;
 
 use nalgebra::Vector3;
 use robotc_core::model::TriMesh;
 
 use super::part::Part;
-use super::shape::{Loft, Section, at, drum, join, lathe, rounded_box};
-
-/// Turns z to y: (x, y, z) becomes (x, z, -y).
-fn to_y(mesh: &TriMesh) -> TriMesh {
-    mesh.transformed(&at([0.0; 3], [-FRAC_PI_2, 0.0, 0.0]))
-}
-
-/// Turns z to -y: (x, y, z) becomes (x, -z, y).
-fn to_minus_y(mesh: &TriMesh) -> TriMesh {
-    mesh.transformed(&at([0.0; 3], [FRAC_PI_2, 0.0, 0.0]))
-}
-
-fn moved(mesh: &TriMesh, xyz: [f64; 3]) -> TriMesh {
-    mesh.transformed(&at(xyz, [0.0; 3]))
-}
+use super::shape::{Loft, Section, along_minus_y, along_y, at, drum, lathe, moved, rounded_box};
 
 /// A dark disc that closes the outer side of a drum.
 fn cap(radius: f64, low: f64, high: f64) -> TriMesh {
@@ -61,8 +47,12 @@ fn link0() -> Part {
     )
     .mesh();
     let socket = moved(&rounded_box([0.030, 0.090, 0.052], 0.006, 0.004), [-0.138, 0.0, 0.032]);
-    let all = join([body.clone(), socket.clone()]);
-    Part::new("link0", [body]).trim([seam(0.0535, 0.130, 0.1415), socket]).cover("_hull", &all, Vector3::z())
+    let ring = seam(0.0535, 0.130, 0.1415);
+    Part::new("link0", [body.clone()]).trim([ring.clone(), socket.clone()]).cover(
+        "_hull",
+        &[&body, &ring, &socket],
+        Vector3::z(),
+    )
 }
 
 fn link1() -> Part {
@@ -77,14 +67,15 @@ fn link1() -> Part {
         [0.003, 0.045],
     )
     .mesh();
-    let shoulder = to_y(&drum(0.0570, -0.107, -0.002, 0.010));
+    let shoulder = along_y(&drum(0.0570, -0.107, -0.002, 0.010));
+    let ring = seam(0.0525, -0.1915, -0.180);
     Part::new("link1", [limb.clone(), shoulder])
-        .trim([seam(0.0525, -0.1915, -0.180), to_y(&cap(0.0420, -0.110, -0.100))])
-        .cover("_hull", &limb, Vector3::z())
+        .trim([ring.clone(), along_y(&cap(0.0420, -0.110, -0.100))])
+        .cover("_hull", &[&limb, &ring], Vector3::z())
 }
 
 fn link2() -> Part {
-    let limb = to_minus_y(
+    let limb = along_minus_y(
         &Loft::new(
             [
                 Section::oval(-0.050, [0.0, 0.054], [0.0500, 0.0460], 2.6),
@@ -98,9 +89,12 @@ fn link2() -> Part {
         .mesh(),
     );
     let shoulder = drum(0.0570, 0.002, 0.107, 0.010);
-    Part::new("link2", [limb.clone(), shoulder])
-        .trim([to_minus_y(&seam(0.0520, 0.185, 0.1945)), cap(0.0420, 0.100, 0.110)])
-        .cover("_hull", &limb, Vector3::y())
+    let ring = along_minus_y(&seam(0.0520, 0.185, 0.1945));
+    Part::new("link2", [limb.clone(), shoulder]).trim([ring.clone(), cap(0.0420, 0.100, 0.110)]).cover(
+        "_hull",
+        &[&limb, &ring],
+        Vector3::y(),
+    )
 }
 
 fn link3() -> Part {
@@ -115,13 +109,13 @@ fn link3() -> Part {
         [0.003, 0.042],
     )
     .mesh();
-    let elbow = moved(&to_y(&drum(0.0535, 0.002, 0.101, 0.010)), [0.0825, 0.0, 0.0]);
-    let disc = moved(&to_y(&cap(0.0400, 0.094, 0.104)), [0.0825, 0.0, 0.0]);
-    Part::new("link3", [limb.clone(), elbow]).trim([disc]).cover("_hull", &limb, Vector3::z())
+    let elbow = moved(&along_y(&drum(0.0535, 0.002, 0.101, 0.010)), [0.0825, 0.0, 0.0]);
+    let disc = moved(&along_y(&cap(0.0400, 0.094, 0.104)), [0.0825, 0.0, 0.0]);
+    Part::new("link3", [limb.clone(), elbow]).trim([disc]).cover("_hull", &[&limb], Vector3::z())
 }
 
 fn link4() -> Part {
-    let limb = to_y(
+    let limb = along_y(
         &Loft::new(
             [
                 Section::oval(-0.046, [0.0, -0.050], [0.0460, 0.0430], 2.6),
@@ -135,10 +129,10 @@ fn link4() -> Part {
         .mesh(),
     );
     let elbow = drum(0.0535, 0.002, 0.101, 0.010);
-    let ring = moved(&to_y(&seam(0.0510, 0.115, 0.1240)), [-0.0825, 0.0, 0.0]);
-    Part::new("link4", [limb.clone(), elbow]).trim([cap(0.0400, 0.094, 0.104), ring]).cover(
+    let ring = moved(&along_y(&seam(0.0510, 0.115, 0.1240)), [-0.0825, 0.0, 0.0]);
+    Part::new("link4", [limb.clone(), elbow]).trim([cap(0.0400, 0.094, 0.104), ring.clone()]).cover(
         "_hull",
-        &limb,
+        &[&limb, &ring],
         Vector3::y(),
     )
 }
@@ -156,11 +150,11 @@ fn link5() -> Part {
         [0.003, 0.028],
     )
     .mesh();
-    let wrist = to_y(&drum(0.0490, 0.052, 0.117, 0.009));
+    let wrist = along_y(&drum(0.0490, 0.052, 0.117, 0.009));
     Part::new("link5", [limb.clone(), wrist])
-        .trim([to_y(&cap(0.0370, 0.110, 0.120))])
-        .cover("_upper_hull", &between(&limb, -0.3, -0.12), Vector3::z())
-        .cover("_hull", &between(&limb, -0.2, 0.1), Vector3::z())
+        .trim([along_y(&cap(0.0370, 0.110, 0.120))])
+        .cover("_upper_hull", &[&between(&limb, -0.3, -0.12)], Vector3::z())
+        .cover("_hull", &[&between(&limb, -0.2, 0.1)], Vector3::z())
 }
 
 fn link6() -> Part {
@@ -173,12 +167,12 @@ fn link6() -> Part {
         [0.012, 0.012],
     )
     .mesh();
-    let turret = moved(&to_y(&drum(0.0440, -0.050, 0.056, 0.010)), [0.088, 0.0, 0.0]);
-    let lamp = moved(&to_y(&cap(0.0300, 0.050, 0.059)), [0.088, 0.0, 0.0]);
-    let all = join([wrist.clone(), bridge.clone()]);
-    Part::new("link6", [wrist, bridge, turret]).trim([cap(0.0370, 0.044, 0.053), lamp]).cover(
+    let turret = moved(&along_y(&drum(0.0440, -0.050, 0.056, 0.010)), [0.088, 0.0, 0.0]);
+    let lamp = moved(&along_y(&cap(0.0300, 0.050, 0.059)), [0.088, 0.0, 0.0]);
+    let disc = cap(0.0370, 0.044, 0.053);
+    Part::new("link6", [wrist.clone(), bridge.clone(), turret]).trim([disc.clone(), lamp]).cover(
         "_hull",
-        &all,
+        &[&wrist, &bridge, &disc],
         Vector3::z(),
     )
 }
@@ -213,8 +207,11 @@ fn hand() -> Part {
     .mesh();
     let flange = drum(0.0315, 0.0, 0.012, 0.001);
     let rail = moved(&rounded_box([0.024, 0.190, 0.012], 0.004, 0.001), [0.0, 0.0, 0.0595]);
-    let all = join([body.clone(), flange.clone(), rail.clone()]);
-    Part::new("hand", [body]).trim([flange, rail]).cover("_hull", &all, Vector3::y())
+    Part::new("hand", [body.clone()]).trim([flange.clone(), rail.clone()]).cover(
+        "_hull",
+        &[&body, &flange, &rail],
+        Vector3::y(),
+    )
 }
 
 /// The finger on the side of +y: its pad lies in the plane y = 0.
@@ -231,6 +228,5 @@ fn finger() -> Part {
     );
     let blade = Loft { around: 24, steps: 2, ..blade }.mesh();
     let pad = moved(&rounded_box([0.0175, 0.0020, 0.0185], 0.0008, 0.0006), [0.0, 0.0010, 0.0440]);
-    let tip = join([blade.clone(), pad.clone()]);
-    Part::new("finger", [carriage, blade]).trim([pad]).cover("_hull", &tip, Vector3::z())
+    Part::new("finger", [carriage, blade]).trim([pad])
 }

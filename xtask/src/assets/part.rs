@@ -26,9 +26,10 @@ impl Part {
         self
     }
 
-    /// Adds a convex cover of `body`, with planes turned about `axis`; its file is named after `suffix`.
-    pub(crate) fn cover(mut self, suffix: &'static str, body: &TriMesh, axis: Vector3<f64>) -> Self {
-        self.covers.push((suffix, enclosing(&body.vertices, &directions(axis, 10))));
+    /// Adds a convex cover of `bodies`, with planes turned about `axis`; its file name ends with `suffix`.
+    pub(crate) fn cover(mut self, suffix: &'static str, bodies: &[&TriMesh], axis: Vector3<f64>) -> Self {
+        let points: Vec<_> = bodies.iter().flat_map(|body| body.vertices.iter().copied()).collect();
+        self.covers.push((suffix, enclosing(&points, &directions(axis, 8))));
         self
     }
 

@@ -8,7 +8,7 @@ mod polytope;
 mod prism;
 mod tube;
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use nalgebra::Point3;
 use robotc_core::Pose;
@@ -79,6 +79,26 @@ pub(crate) fn circle(count: usize) -> impl Iterator<Item = [f64; 2]> {
 /// A pose from translation and roll, pitch, yaw, as description files write it.
 pub(crate) fn at(xyz: [f64; 3], rpy: [f64; 3]) -> Pose {
     Origin { xyz, rpy }.pose()
+}
+
+/// Moved without turning.
+pub(crate) fn moved(mesh: &TriMesh, xyz: [f64; 3]) -> TriMesh {
+    mesh.transformed(&at(xyz, [0.0; 3]))
+}
+
+/// Turned so that z becomes y: (x, y, z) goes to (x, z, -y).
+pub(crate) fn along_y(mesh: &TriMesh) -> TriMesh {
+    mesh.transformed(&at([0.0; 3], [-FRAC_PI_2, 0.0, 0.0]))
+}
+
+/// Turned so that z becomes -y: (x, y, z) goes to (x, -z, y).
+pub(crate) fn along_minus_y(mesh: &TriMesh) -> TriMesh {
+    mesh.transformed(&at([0.0; 3], [FRAC_PI_2, 0.0, 0.0]))
+}
+
+/// Turned so that z becomes -x: (x, y, z) goes to (-z, y, x).
+pub(crate) fn along_minus_x(mesh: &TriMesh) -> TriMesh {
+    mesh.transformed(&at([0.0; 3], [0.0, -FRAC_PI_2, 0.0]))
 }
 
 /// Several meshes as one.
