@@ -17,11 +17,12 @@ mod testbed;
 pub mod timing;
 #[cfg(test)]
 mod toy;
+pub mod travel;
 
 pub use arm::{ArmError, ArmModel};
 pub use budget::{Budget, Interrupt};
 pub use cartesian::{LineFailure, LineObstacle, LineOptions, cartesian_line};
-pub use constraint::Constraint;
+pub use constraint::{Constraint, Upright};
 pub use edge::{Blocked, EdgeChecker, Obstruction};
 pub use goal::{FixedGoals, GoalDraw, GoalSampler};
 pub use grasp::{Contact, Grasp, GraspSet};
@@ -29,3 +30,4 @@ pub use rrt::{RrtConnect, RrtFailure, RrtOptions, RrtSolution};
 pub use smooth::{Smoother, smooth};
 pub use space::{Axis, Space};
 pub use timing::{MotionLimits, TimedPath, TimingOptions, time_path};
+pub use travel::TravelBounds;
