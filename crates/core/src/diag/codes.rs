@@ -279,6 +279,37 @@ pub const CODES: &[CodeInfo] = &[
         "A visual or collision element has no shape, an unknown shape, or a size that is not positive.",
     ),
     entry(
+        "R0260",
+        "semantic description cannot be used",
+        "An element of an SRDF file lacks a name, holds something that is not a joint value, or is defined \
+         twice. The rest of the file is used.",
+    ),
+    entry(
+        "R0261",
+        "name not on the robot",
+        "An SRDF file names a link, joint or group that the robot does not have. The entry has no effect; one \
+         SRDF often serves several variants of a robot, so this may be as intended.",
+    ),
+    entry(
+        "R0270",
+        "not well-formed YAML",
+        "A joint limit file breaks a rule of YAML, so nothing in it could be read. Check indentation, \
+         brackets and tabs near the place.",
+    ),
+    entry(
+        "R0271",
+        "joint limit cannot be used",
+        "An entry of a joint limit file is not what MoveIt's format asks for: `joint_limits:` holds a table \
+         for each joint with `max_velocity`, `max_acceleration`, `max_jerk`, `min_position`, `max_position` \
+         (numbers), and `has_..._limits` (true or false) that turn them off.",
+    ),
+    entry(
+        "R0272",
+        "joint limit without effect",
+        "A joint limit file names a joint that the robot does not have, or limits that leave the joint no position. The \
+         entry is ignored.",
+    ),
+    entry(
         "R0290",
         "internal disagreement",
         "The description passed all checks, but reading back what was understood gave something else. This is \

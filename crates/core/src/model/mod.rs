@@ -8,6 +8,7 @@ mod calibration;
 mod chain;
 mod configuration;
 mod kinematics;
+mod limits;
 mod robot;
 mod trimesh;
 

@@ -230,7 +230,7 @@ pub struct RobotModel {
     name: String,
     links: TypedVec<LinkIdx, Link>,
     joints: TypedVec<JointIdx, Joint>,
-    dofs: TypedVec<DofIdx, Dof>,
+    pub(super) dofs: TypedVec<DofIdx, Dof>,
     root: LinkIdx,
     /// Joints ordered parents first.
     order: Vec<JointIdx>,
@@ -403,6 +403,9 @@ pub enum ModelError {
         /// The joint followed.
         target: String,
     },
+    /// No position of a joint is within all of its limits.
+    #[error("joint {0} is left with no position that it may take")]
+    EmptyRange(String),
     /// Not a finite number where one is needed.
     #[error("{0} has a value that is not a finite number")]
     NotFinite(String),
