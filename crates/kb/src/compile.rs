@@ -1,0 +1,391 @@
+//! Computing what a graph lacks.
+//!
+//! Nodes whose inputs are known run in parallel on rayon's pool. Each artefact is checked and stored as soon as it is
+//! computed, so that an interrupted run is resumed by the next. One process computes at a time; another waits, and
+//! then finds most of its work done.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
+
+use rayon::prelude::*;
+use robotc_core::Seed;
+use thiserror::Error;
+
+use crate::explain::{Reason, reason};
+use crate::graph::{Dep, Graph, NodeIdx};
+use crate::kind::Kind;
+use crate::record::KeyRecord;
+use crate::resolve::{Knowledge, Known, LoadError};
+use crate::store::{NewArtefact, Store, StoreError, Writer};
+
+/// The program, as artefacts record it.
+const PROVENANCE: &str = concat!("robotc ", env!("CARGO_PKG_VERSION"));
+
+/// Why an artefact could not be computed.
+#[derive(Debug, Error)]
+pub enum BuildError {
+    /// The caller asked to stop.
+    #[error("interrupted")]
+    Cancelled,
+    /// The inputs have no such artefact; the text says why.
+    #[error("{0}")]
+    Impossible(String),
+    /// The artefact failed its own check: a bug of the kind, and nothing was stored.
+    #[error("the result failed its check and was not stored: {0}")]
+    Check(String),
+    /// An input could not be loaded.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// The store failed.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
+/// What happens while compiling.
+#[derive(Debug, Clone, Copy)]
+pub enum Event<'a> {
+    /// Another process is computing; this one waits for it.
+    Waiting,
+    /// An artefact is being computed.
+    Started {
+        /// Name of the kind.
+        kind: &'static str,
+        /// What it is about.
+        subject: &'a str,
+        /// Why.
+        reason: &'a Reason,
+    },
+    /// So much of an artefact is computed. Events may come from several threads and out of order.
+    Progress {
+        /// Name of the kind.
+        kind: &'static str,
+        /// What it is about.
+        subject: &'a str,
+        /// Items done.
+        done: u64,
+        /// Items in all.
+        total: u64,
+    },
+    /// An artefact is stored.
+    Stored {
+        /// Name of the kind.
+        kind: &'static str,
+        /// What it is about.
+        subject: &'a str,
+        /// Number of bytes.
+        size: usize,
+    },
+    /// An artefact could not be computed.
+    Failed {
+        /// Name of the kind.
+        kind: &'static str,
+        /// What it is about.
+        subject: &'a str,
+        /// Why.
+        error: &'a BuildError,
+    },
+}
+
+/// Watches a compilation and may stop it. Called from several threads.
+pub trait Observer: Sync {
+    /// Something happened.
+    fn event(&self, event: Event<'_>);
+
+    /// Whether to stop; asked often.
+    fn cancelled(&self) -> bool {
+        false
+    }
+}
+
+/// Watches nothing.
+impl Observer for () {
+    fn event(&self, _event: Event<'_>) {}
+}
+
+/// What became of a node.
+#[derive(Debug)]
+pub enum Outcome {
+    /// It was there.
+    Reused,
+    /// It was computed.
+    Built(Reason),
+    /// It could not be computed.
+    Failed(BuildError),
+    /// An input could not be computed.
+    Blocked(NodeIdx),
+    /// The caller asked to stop before its turn came.
+    Cancelled,
+}
+
+/// What compiling did.
+pub struct CompileReport {
+    /// What became of each node, in the order of the graph.
+    pub outcomes: Vec<Outcome>,
+    /// The artefacts, for loading.
+    pub knowledge: Knowledge,
+}
+
+impl CompileReport {
+    /// Whether everything is known.
+    pub fn complete(&self) -> bool {
+        self.outcomes.iter().all(|o| matches!(o, Outcome::Reused | Outcome::Built(_)))
+    }
+
+    /// The nodes that were computed, with the reasons.
+    pub fn built(&self) -> impl Iterator<Item = (NodeIdx, &Reason)> {
+        self.knowledge.graph().indices().zip(&self.outcomes).filter_map(|(node, outcome)| match outcome {
+            Outcome::Built(reason) => Some((node, reason)),
+            _ => None,
+        })
+    }
+
+    /// The nodes that could not be computed, with the errors.
+    pub fn failed(&self) -> impl Iterator<Item = (NodeIdx, &BuildError)> {
+        self.knowledge.graph().indices().zip(&self.outcomes).filter_map(|(node, outcome)| match outcome {
+            Outcome::Failed(error) => Some((node, error)),
+            _ => None,
+        })
+    }
+}
+
+/// Computes every artefact of `graph` that `store` lacks, or holds damaged.
+///
+/// A node that fails does not stop others that do not need it. The error is one of the store as a whole.
+pub fn compile(
+    graph: &Arc<Graph>,
+    store: &Arc<Store>,
+    observer: &dyn Observer,
+) -> Result<CompileReport, StoreError> {
+    let knowledge = Knowledge::unresolved(graph, store);
+    let mut outcomes: Vec<OnceLock<Outcome>> = graph.nodes().iter().map(|_| OnceLock::new()).collect();
+    for node in graph.indices() {
+        if let Some(record) = knowledge.key_record(node)
+            && let Found::Whole(known) = find(store, &record)?
+        {
+            knowledge.settle(node, known);
+            outcomes[node.index()] = Outcome::Reused.into();
+        }
+    }
+    if outcomes.iter().any(|outcome| outcome.get().is_none()) {
+        let writer = match store.try_writer()? {
+            Some(writer) => writer,
+            None => {
+                observer.event(Event::Waiting);
+                store.writer()?
+            }
+        };
+        Run { knowledge: &knowledge, observer, writer, outcomes: &outcomes }.compute();
+    }
+    remember(&knowledge)?;
+    let settled = |outcome: OnceLock<Outcome>| outcome.into_inner().unwrap_or(Outcome::Cancelled);
+    Ok(CompileReport { outcomes: outcomes.into_iter().map(settled).collect(), knowledge })
+}
+
+/// Records which keys are now in use for the subjects of the graph.
+fn remember(knowledge: &Knowledge) -> Result<(), StoreError> {
+    let (graph, store) = (knowledge.graph(), knowledge.store());
+    let mut changed = Vec::new();
+    for (index, node) in graph.indices().zip(graph.nodes()) {
+        let Some(known) = knowledge.known(index) else { continue };
+        for subject in &node.subjects {
+            if store.latest(node.kind_name(), subject)? != Some(known.key) {
+                changed.push((node.kind_name(), subject.as_str(), known.key));
+            }
+        }
+    }
+    if changed.is_empty() { Ok(()) } else { store.set_latest(&changed) }
+}
+
+/// What a store has under a key.
+enum Found {
+    Whole(Known),
+    Gone,
+    Damaged,
+    Nothing,
+}
+
+fn find(store: &Store, record: &KeyRecord) -> Result<Found, StoreError> {
+    let key = record.key();
+    let Some(content) = store.lookup(&key)? else { return Ok(Found::Nothing) };
+    match store.read(&content) {
+        Ok(_) => Ok(Found::Whole(Known { key, content })),
+        Err(StoreError::Missing(_)) => Ok(Found::Gone),
+        Err(StoreError::Damaged(_)) => Ok(Found::Damaged),
+        Err(error) => Err(error),
+    }
+}
+
+/// The nodes of a graph that are being computed.
+struct Run<'a> {
+    knowledge: &'a Knowledge,
+    observer: &'a dyn Observer,
+    writer: Writer,
+    outcomes: &'a [OnceLock<Outcome>],
+}
+
+impl Run<'_> {
+    fn compute(&self) {
+        let graph = self.knowledge.graph();
+        let open = |node: NodeIdx| self.outcomes[node.index()].get().is_none();
+        let mut dependants: Vec<Vec<NodeIdx>> = vec![Vec::new(); graph.nodes().len()];
+        let mut waits_for = Vec::new();
+        for node in graph.indices() {
+            let mut inputs: Vec<NodeIdx> = graph.node(node).inputs.clone();
+            inputs.sort();
+            inputs.dedup();
+            inputs.retain(|&input| open(input));
+            for input in &inputs {
+                dependants[input.index()].push(node);
+            }
+            waits_for.push(AtomicUsize::new(inputs.len()));
+        }
+        rayon::scope(|scope| {
+            let ready =
+                graph.indices().filter(|&n| open(n) && waits_for[n.index()].load(Ordering::Relaxed) == 0);
+            // Collected first: nodes that finish meanwhile would otherwise be seen twice.
+            for node in ready.collect::<Vec<_>>() {
+                self.spawn(scope, node, &dependants, &waits_for);
+            }
+        });
+    }
+
+    fn spawn<'s>(
+        &'s self,
+        scope: &rayon::Scope<'s>,
+        node: NodeIdx,
+        dependants: &'s [Vec<NodeIdx>],
+        waits_for: &'s [AtomicUsize],
+    ) {
+        scope.spawn(move |scope| {
+            if self.observer.cancelled() {
+                return;
+            }
+            let outcome = self.settle(node);
+            let set = self.outcomes[node.index()].set(outcome);
+            assert!(set.is_ok(), "a node is computed once");
+            for &dependant in &dependants[node.index()] {
+                if waits_for[dependant.index()].fetch_sub(1, Ordering::AcqRel) == 1 {
+                    self.spawn(scope, dependant, dependants, waits_for);
+                }
+            }
+        });
+    }
+
+    fn settle(&self, index: NodeIdx) -> Outcome {
+        let graph = self.knowledge.graph();
+        let node = graph.node(index);
+        if let Some(&input) = node.inputs.iter().find(|&&input| self.knowledge.known(input).is_none()) {
+            return Outcome::Blocked(input);
+        }
+        let (kind, subject) = (node.kind_name(), node.subjects[0].as_str());
+        match self.reuse_or_build(index) {
+            Ok(None) => Outcome::Reused,
+            Ok(Some((reason, size))) => {
+                self.observer.event(Event::Stored { kind, subject, size });
+                Outcome::Built(reason)
+            }
+            Err(BuildError::Cancelled) => Outcome::Cancelled,
+            Err(error) => {
+                self.observer.event(Event::Failed { kind, subject, error: &error });
+                Outcome::Failed(error)
+            }
+        }
+    }
+
+    /// `None` when the artefact was there.
+    fn reuse_or_build(&self, index: NodeIdx) -> Result<Option<(Reason, usize)>, BuildError> {
+        let node = self.knowledge.graph().node(index);
+        let store = self.knowledge.store();
+        let (kind, subject) = (node.kind_name(), node.subjects[0].as_str());
+        let record = self.knowledge.key_record(index).expect("all inputs of the node are known");
+        let key = record.key();
+        let reason = match find(store, &record)? {
+            Found::Whole(known) => {
+                self.knowledge.settle(index, known);
+                return Ok(None);
+            }
+            Found::Gone => Reason::Gone,
+            Found::Damaged => Reason::Damaged,
+            Found::Nothing => reason(store, subject, &record)?,
+        };
+        self.observer.event(Event::Started { kind, subject, reason: &reason });
+        let context = Context {
+            knowledge: self.knowledge,
+            seed: Seed::from_bytes(*key.as_bytes()),
+            kind,
+            subject,
+            observer: self.observer,
+        };
+        let bytes = node.kind.build(&*node.work, &context)?;
+        let text = reason.to_string();
+        let artefact =
+            NewArtefact { record: &record, subject, reason: &text, provenance: PROVENANCE, bytes: &bytes };
+        let content = store.publish(&self.writer, &artefact)?;
+        self.knowledge.settle(index, Known { key, content });
+        Ok(Some((reason, bytes.len())))
+    }
+}
+
+/// How often a parallel map reports its progress, at most.
+const REPORTS: u64 = 256;
+
+/// What a build may use besides its inputs and parameters.
+pub struct Context<'a> {
+    knowledge: &'a Knowledge,
+    seed: Seed,
+    kind: &'static str,
+    subject: &'a str,
+    observer: &'a dyn Observer,
+}
+
+impl Context<'_> {
+    /// An artefact that this one is computed from.
+    pub fn load<K: Kind>(&self, dep: &Dep<K>) -> Result<Arc<K::Artefact>, BuildError> {
+        Ok(self.knowledge.load_node(dep)?)
+    }
+
+    /// The root of all randomness: a function of the key.
+    pub fn seed(&self) -> Seed {
+        self.seed
+    }
+
+    /// Reports that `done` of `total` items are computed.
+    pub fn progress(&self, done: u64, total: u64) {
+        self.observer.event(Event::Progress { kind: self.kind, subject: self.subject, done, total });
+    }
+
+    /// Stops a build that nobody waits for any more.
+    pub fn checkpoint(&self) -> Result<(), BuildError> {
+        if self.observer.cancelled() { Err(BuildError::Cancelled) } else { Ok(()) }
+    }
+
+    /// Computes `f(i, items[i])` for all items in parallel, with progress; the results are in order.
+    pub fn map<T: Sync, R: Send>(
+        &self,
+        items: &[T],
+        f: impl Fn(usize, &T) -> R + Sync,
+    ) -> Result<Vec<R>, BuildError> {
+        self.try_map(items, |i, item| Ok(f(i, item)))
+    }
+
+    /// As [`map`](Self::map), for work that can fail. The error is that of the first item that failed in time.
+    pub fn try_map<T: Sync, R: Send>(
+        &self,
+        items: &[T],
+        f: impl Fn(usize, &T) -> Result<R, BuildError> + Sync,
+    ) -> Result<Vec<R>, BuildError> {
+        let done = AtomicUsize::new(0);
+        let total = items.len() as u64;
+        let one = |(i, item): (usize, &T)| {
+            self.checkpoint()?;
+            let result = f(i, item)?;
+            let count = done.fetch_add(1, Ordering::Relaxed) as u64 + 1;
+            // A few hundred reports are enough for a smooth display, and cost nothing.
+            if count * REPORTS / total != (count - 1) * REPORTS / total {
+                self.progress(count, total);
+            }
+            Ok(result)
+        };
+        items.par_iter().enumerate().map(one).collect()
+    }
+}

@@ -1,0 +1,257 @@
+//! Narrow views of a project: what an artefact may read, and what its key therefore covers.
+//!
+//! A view holds copies with names taken away, so that renaming changes no key, and numbers as they were written.
+
+use std::sync::Arc;
+
+use robotc_core::ids::{Idx, LinkIdx};
+use robotc_core::model::{
+    ChainError, Drive, DynamicLimits, Geometry, JointMotion, RobotBuilder, RobotModel, Shape, TriMesh,
+};
+
+use crate::key::{Canonical, KeyHasher};
+use crate::record::Parts;
+
+/// Whether a [`Mechanism`] holds the limits of its joints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Limits {
+    /// It does.
+    Kept,
+    /// Of joints that slide; those that turn are unlimited.
+    Sliding,
+    /// All joints are unlimited.
+    Dropped,
+}
+
+impl Limits {
+    fn keeps(self, motion: JointMotion) -> bool {
+        match self {
+            Self::Kept => true,
+            Self::Sliding => motion == JointMotion::Prismatic,
+            Self::Dropped => false,
+        }
+    }
+}
+
+/// The links and joints of a robot, or of a chain of it, as a robot without shapes, masses, speeds and names.
+///
+/// Links are called `l0`, `l1` ... and joints `j0`, `j1` ..., by position.
+#[derive(Debug, Clone)]
+pub struct Mechanism {
+    model: Arc<RobotModel>,
+    limits: Limits,
+    /// What people call the joints.
+    joint_names: Vec<String>,
+}
+
+impl Mechanism {
+    /// All links and joints. Links, joints and degrees of freedom keep their indices.
+    pub fn whole(model: &RobotModel, limits: Limits) -> Self {
+        let links: Vec<LinkIdx> = model.links().indices().collect();
+        Self::of(model, &links, limits).expect("a robot does not mimic joints outside of itself")
+    }
+
+    /// The links from `base` to `tip`, which become the first and the last.
+    pub fn chain(
+        model: &RobotModel,
+        base: LinkIdx,
+        tip: LinkIdx,
+        limits: Limits,
+    ) -> Result<Self, ChainError> {
+        let name = |link: LinkIdx| model.links()[link].name.clone();
+        let joints = model
+            .joints_between(base, tip)
+            .ok_or_else(|| ChainError::NotBelow { base: name(base), tip: name(tip) })?;
+        if joints.iter().all(|&j| model.joints()[j].motion == JointMotion::Fixed) {
+            return Err(ChainError::NoJoints { base: name(base), tip: name(tip) });
+        }
+        let links: Vec<LinkIdx> =
+            std::iter::once(base).chain(joints.iter().map(|&j| model.joints()[j].child)).collect();
+        Self::of(model, &links, limits)
+    }
+
+    /// The given links with the joints between them.
+    fn of(model: &RobotModel, links: &[LinkIdx], limits: Limits) -> Result<Self, ChainError> {
+        let mut builder = RobotBuilder::new("mechanism");
+        let link_name = |link: LinkIdx| links.iter().position(|&l| l == link).map(|i| format!("l{i}"));
+        for i in 0..links.len() {
+            builder.link(format!("l{i}"), Vec::new(), Vec::new(), None);
+        }
+        let kept: Vec<_> = model
+            .joints()
+            .enumerate()
+            .filter_map(|(index, joint)| {
+                Some((index, joint, link_name(joint.parent)?, link_name(joint.child)?))
+            })
+            .collect();
+        let joint_name = |dof| {
+            let target = model.dofs()[dof].joint;
+            kept.iter().position(|&(index, ..)| index == target).map(|i| format!("j{i}"))
+        };
+        for (i, (_, joint, parent, child)) in kept.iter().enumerate() {
+            let mut bounds = (f64::NEG_INFINITY, f64::INFINITY, joint.motion == JointMotion::Revolute);
+            let mut mimic = None;
+            match joint.drive {
+                Drive::Fixed => {}
+                Drive::Dof(dof) => {
+                    let dof = &model.dofs()[dof];
+                    if limits.keeps(joint.motion) {
+                        bounds = (dof.lower, dof.upper, dof.continuous);
+                    }
+                }
+                Drive::Mimic { dof, multiplier, offset } => {
+                    let target = joint_name(dof).ok_or_else(|| ChainError::MimicOutside {
+                        joint: joint.name.clone(),
+                        target: model.dofs()[dof].name.clone(),
+                    })?;
+                    mimic = Some((target, multiplier, offset));
+                }
+            }
+            let (lower, upper, continuous) = bounds;
+            let limits = (lower, upper, continuous, DynamicLimits::DEFAULT);
+            builder.moving(
+                &format!("j{i}"),
+                joint.motion,
+                parent,
+                child,
+                joint.origin,
+                joint.axis,
+                limits,
+                mimic,
+            );
+        }
+        let joint_names = kept.iter().map(|(_, joint, ..)| joint.name.clone()).collect();
+        let model = builder.build().expect("connected links of a robot are a robot");
+        Ok(Self { model: Arc::new(model), limits, joint_names })
+    }
+
+    /// The reduced robot.
+    pub fn model(&self) -> &Arc<RobotModel> {
+        &self.model
+    }
+
+    /// The last link: the tip of a chain.
+    pub fn tip(&self) -> LinkIdx {
+        LinkIdx::new(self.model.links().len() - 1)
+    }
+
+    /// Adds all of it to a key.
+    pub fn key_parts(&self, parts: &mut Parts) {
+        for (joint, name) in self.model.joints().iter().zip(&self.joint_names) {
+            let drive = match joint.drive {
+                Drive::Fixed => None,
+                Drive::Dof(dof) => Some((dof.index(), 1.0, 0.0)),
+                Drive::Mimic { dof, multiplier, offset } => Some((dof.index(), multiplier, offset)),
+            };
+            let place = (joint.parent.index(), joint.child.index(), joint.origin);
+            let axis = (joint.motion != JointMotion::Fixed).then_some(joint.axis);
+            parts.add("joint", name, &(place, joint.motion, axis, drive));
+        }
+        for dof in self.model.dofs() {
+            if self.limits.keeps(self.model.joints()[dof.joint].motion) {
+                let name = &self.joint_names[dof.joint.index()];
+                let bound = |x: f64| x.is_finite().then_some(x);
+                parts.add("limits", name, &(bound(dof.lower), bound(dof.upper), dof.continuous));
+            }
+        }
+    }
+}
+
+/// Shapes without colours and file names.
+#[derive(Debug, Clone)]
+pub struct Shapes {
+    elements: Vec<Geometry>,
+}
+
+impl Shapes {
+    /// These elements.
+    pub fn of(elements: &[Geometry]) -> Self {
+        let plain = |element: &Geometry| {
+            let mut element = Geometry { colour: None, ..element.clone() };
+            if let Shape::Mesh { uri, .. } = &mut element.shape {
+                uri.clear();
+            }
+            element
+        };
+        Self { elements: elements.iter().map(plain).collect() }
+    }
+
+    /// The elements.
+    pub fn elements(&self) -> &[Geometry] {
+        &self.elements
+    }
+
+    /// Adds all of it to a key; `name` is what people call the body.
+    pub fn key_parts(&self, name: &str, parts: &mut Parts) {
+        parts.add("shape", name, self.elements.as_slice());
+    }
+}
+
+impl Canonical for Geometry {
+    fn write(&self, out: &mut KeyHasher) {
+        out.add(&self.origin);
+        match &self.shape {
+            Shape::Box { size } => out.add("box").add(size),
+            Shape::Cylinder { radius, length } => out.add("cylinder").add(&(*radius, *length)),
+            Shape::Capsule { radius, length } => out.add("capsule").add(&(*radius, *length)),
+            Shape::Sphere { radius } => out.add("sphere").add(radius),
+            Shape::Mesh { mesh, .. } => out.add("mesh").add(&**mesh),
+        };
+    }
+}
+
+impl Canonical for TriMesh {
+    fn write(&self, out: &mut KeyHasher) {
+        out.numbers(self.vertices.iter().flat_map(|v| [v.x, v.y, v.z]));
+        out.bytes(&self.faces.iter().flatten().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use robotc_core::model::Origin;
+
+    use super::*;
+
+    fn arm() -> RobotModel {
+        let mut builder = RobotBuilder::new("r");
+        for name in ["base", "upper", "lower", "finger"] {
+            builder.link(name, Vec::new(), Vec::new(), None);
+        }
+        let limits = (-1.0, 2.0, false, DynamicLimits::DEFAULT);
+        let turn = JointMotion::Revolute;
+        let x = [1.0, 0.0, 0.0];
+        builder.moving("a", turn, "base", "upper", Origin::default(), x, limits, None);
+        builder.moving("b", turn, "upper", "lower", Origin::default(), x, limits, None);
+        let follow = Some(("a".to_owned(), 2.0, 0.5));
+        builder.moving("c", turn, "lower", "finger", Origin::default(), x, limits, follow);
+        builder.build().expect("a robot")
+    }
+
+    #[test]
+    fn a_chain_keeps_what_moves_it_and_nothing_else() {
+        let model = arm();
+        let link = |name| model.link_named(name).expect("exists");
+        let chain = Mechanism::chain(&model, link("base"), link("lower"), Limits::Dropped).expect("a chain");
+        assert_eq!(chain.model().links().len(), 3);
+        assert!(chain.model().dofs().iter().all(|d| d.lower == f64::NEG_INFINITY));
+        let outside = Mechanism::chain(&model, link("upper"), link("finger"), Limits::Kept);
+        assert_eq!(
+            outside.expect_err("joint a is not in it"),
+            ChainError::MimicOutside { joint: "c".into(), target: "a".into() }
+        );
+        let above = Mechanism::chain(&model, link("lower"), link("base"), Limits::Kept);
+        assert!(matches!(above, Err(ChainError::NotBelow { .. })));
+    }
+
+    #[test]
+    fn the_whole_keeps_indices_and_mimicry() {
+        let model = arm();
+        let whole = Mechanism::whole(&model, Limits::Kept);
+        for (a, b) in model.joints().iter().zip(whole.model().joints()) {
+            assert_eq!((a.parent, a.child, a.drive), (b.parent, b.child, b.drive));
+        }
+        let bounds = |m: &RobotModel| m.dofs().iter().map(|d| (d.lower, d.upper)).collect::<Vec<_>>();
+        assert_eq!(bounds(&model), bounds(whole.model()));
+    }
+}

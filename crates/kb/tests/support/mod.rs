@@ -1,0 +1,198 @@
+//! A small robot and task, made in code, that tests change one thing of.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use robotc_core::ids::{Idx, LinkIdx};
+use robotc_core::model::{
+    Configuration, DynamicLimits, Geometry, Inertial, JointMotion, Origin, RobotBuilder, Shape,
+};
+use robotc_core::robot::{Base, Preshape};
+use robotc_core::task::{Destination, Goal, Object, Obstacle};
+use robotc_core::{Arm, Gripper, Pose, Robot, Task};
+use robotc_kb::{Given, Project};
+
+/// Everything an edit can change.
+#[derive(Clone)]
+pub(crate) struct Spec {
+    pub(crate) robot_name: String,
+    pub(crate) links: Vec<LinkSpec>,
+    pub(crate) tool: Pose,
+    pub(crate) object: Object,
+    pub(crate) obstacle: Obstacle,
+    pub(crate) given: Given,
+}
+
+#[derive(Clone)]
+pub(crate) struct LinkSpec {
+    pub(crate) name: String,
+    pub(crate) visual: Geometry,
+    pub(crate) collision: Geometry,
+    pub(crate) mass: f64,
+    /// Name, motion, parent (position), origin, axis, limits, mimic; `None` for the root.
+    pub(crate) joint: Option<JointSpec>,
+}
+
+#[derive(Clone)]
+pub(crate) struct JointSpec {
+    pub(crate) name: String,
+    pub(crate) motion: JointMotion,
+    pub(crate) parent: usize,
+    pub(crate) origin: Origin,
+    pub(crate) axis: [f64; 3],
+    pub(crate) limits: (f64, f64),
+    pub(crate) dynamics: DynamicLimits,
+    pub(crate) mimic: Option<usize>,
+}
+
+pub(crate) fn cuboid(size: [f64; 3], xyz: [f64; 3]) -> Geometry {
+    Geometry { origin: Origin { xyz, rpy: [0.0; 3] }, shape: Shape::Box { size }, colour: None }
+}
+
+/// An elbow arm with a spherical wrist and two fingers, the second of which follows the first; a mug and a table.
+pub(crate) fn spec() -> Spec {
+    let links: [(&str, [f64; 3], [f64; 3]); 7] = [
+        ("base", [0.2, 0.2, 0.1], [0.0, 0.0, 0.05]),
+        ("shoulder", [0.1, 0.1, 0.2], [0.0, 0.0, 0.1]),
+        ("upper", [0.08, 0.08, 0.4], [0.0, 0.0, 0.2]),
+        ("fore", [0.07, 0.07, 0.2], [0.0, 0.0, 0.1]),
+        ("wrist_roll", [0.06, 0.06, 0.15], [0.0, 0.0, 0.1]),
+        ("wrist_bend", [0.05, 0.05, 0.05], [0.0, 0.0, 0.0]),
+        ("hand", [0.05, 0.12, 0.06], [0.0, 0.0, 0.08]),
+    ];
+    let joints: [(&str, [f64; 3], [f64; 3], (f64, f64)); 6] = [
+        ("turn", [0.0, 0.0, 0.1], [0.0, 0.0, 1.0], (-2.9, 2.9)),
+        ("lift", [0.0, 0.0, 0.2], [0.0, 1.0, 0.0], (-1.8, 1.8)),
+        ("bend", [0.0, 0.0, 0.4], [0.0, 1.0, 0.0], (-2.5, 2.5)),
+        ("roll", [0.0, 0.0, 0.2], [0.0, 0.0, 1.0], (-2.9, 2.9)),
+        ("pitch", [0.0, 0.0, 0.2], [0.0, 1.0, 0.0], (-2.0, 2.0)),
+        ("spin", [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], (-3.1, 3.1)),
+    ];
+    let mut specs: Vec<LinkSpec> = links
+        .into_iter()
+        .enumerate()
+        .map(|(i, (name, size, centre))| LinkSpec {
+            name: name.into(),
+            visual: cuboid(size, centre),
+            collision: cuboid(size, centre),
+            mass: 1.0,
+            joint: (i > 0).then(|| {
+                let (name, xyz, axis, limits) = joints[i - 1];
+                JointSpec {
+                    name: name.into(),
+                    motion: JointMotion::Revolute,
+                    parent: i - 1,
+                    origin: Origin { xyz, rpy: [0.0; 3] },
+                    axis,
+                    limits,
+                    dynamics: DynamicLimits::DEFAULT,
+                    mimic: None,
+                }
+            }),
+        })
+        .collect();
+    for (name, joint, side, mimic) in [("left", "slide", 1.0, None), ("right", "follow", -1.0, Some(7))] {
+        specs.push(LinkSpec {
+            name: name.into(),
+            visual: cuboid([0.02, 0.01, 0.05], [0.0, 0.005 * side, 0.025]),
+            collision: cuboid([0.02, 0.01, 0.05], [0.0, 0.005 * side, 0.025]),
+            mass: 0.1,
+            joint: Some(JointSpec {
+                name: joint.into(),
+                motion: JointMotion::Prismatic,
+                parent: 6,
+                origin: Origin { xyz: [0.0, 0.0, 0.11], rpy: [0.0; 3] },
+                axis: [0.0, side, 0.0],
+                limits: (0.0, 0.05),
+                dynamics: DynamicLimits::DEFAULT,
+                mimic,
+            }),
+        });
+    }
+    Spec {
+        robot_name: "arm".into(),
+        links: specs,
+        tool: Pose::translation(0.0, 0.0, 0.14),
+        object: Object {
+            name: "mug".into(),
+            geometry: Arc::new(vec![cuboid([0.06, 0.06, 0.09], [0.0; 3])]),
+            mass: 0.3,
+            friction: 0.5,
+            world_from_object: Pose::translation(0.5, 0.0, 0.3),
+        },
+        obstacle: Obstacle {
+            name: "table".into(),
+            geometry: Arc::new(vec![cuboid([1.0, 1.0, 0.04], [0.0; 3])]),
+            world_from_obstacle: Pose::translation(0.6, 0.0, 0.2),
+        },
+        given: Given::default(),
+    }
+}
+
+impl Spec {
+    /// The checked project.
+    pub(crate) fn project(&self) -> Project {
+        let mut builder = RobotBuilder::new(&self.robot_name);
+        for link in &self.links {
+            let inertial = Inertial { origin: Origin::default(), mass: link.mass, inertia: [0.0; 6] };
+            let (visuals, collisions) = (vec![link.visual.clone()], vec![link.collision.clone()]);
+            builder.link(&link.name, visuals, collisions, Some(inertial));
+        }
+        for link in &self.links {
+            if let Some(j) = &link.joint {
+                let limits = (j.limits.0, j.limits.1, false, j.dynamics);
+                let joint_of = |i: usize| self.links[i].joint.as_ref().expect("it moves").name.clone();
+                let mimic = j.mimic.map(|target| (joint_of(target), 1.0, 0.0));
+                let parent = &self.links[j.parent].name;
+                builder.moving(&j.name, j.motion, parent, &link.name, j.origin, j.axis, limits, mimic);
+            }
+        }
+        let model = Arc::new(builder.build().expect("a tree"));
+        let dof = |i: usize| robotc_core::DofIdx::new(i);
+        let robot = Arc::new(Robot {
+            arms: vec![Arm {
+                name: "main".into(),
+                base: LinkIdx::new(0),
+                tip: LinkIdx::new(6),
+                dofs: (0..6).map(dof).collect(),
+                gripper: Some(0),
+                free: None,
+                home: None,
+            }],
+            grippers: vec![Gripper {
+                name: "jaws".into(),
+                palm: LinkIdx::new(6),
+                palm_from_tool: self.tool,
+                approach_in_tool: Vector3::z_axis(),
+                dofs: vec![dof(6)],
+                closing: vec![-1.0],
+                fingers: vec![LinkIdx::new(7), LinkIdx::new(8)],
+                preshapes: vec![Preshape { name: "open".into(), values: vec![0.05] }],
+            }],
+            cameras: Vec::new(),
+            base: Base::Fixed,
+            ignored_pairs: Vec::new(),
+            weights: Vec::new(),
+            model: model.clone(),
+        });
+        let task = Task {
+            name: "tidy".into(),
+            robot,
+            arm: 0,
+            world_from_robot: Pose::identity(),
+            start: Configuration::neutral(&model),
+            objects: vec![self.object.clone()],
+            obstacles: vec![self.obstacle.clone()],
+            goals: vec![Goal::Place {
+                object: 0,
+                destination: Destination::Pose {
+                    world_from_object: Pose::translation(0.4, 0.4, 0.3),
+                    any_yaw: true,
+                },
+                keep_upright: None,
+            }],
+            seed: 1,
+        };
+        Project::of_task(Arc::new(task), self.given.clone())
+    }
+}
