@@ -3,4 +3,5 @@
 mod arms;
 mod broken;
 mod data;
+mod kinematics;
 mod robots;
