@@ -2,12 +2,14 @@
 //!
 //! `cargo xtask assets` writes the files, `cargo xtask assets --check` says which differ.
 
+mod barrett_hand;
 mod obj;
 mod objects;
 mod panda;
 mod part;
 mod shape;
 mod ur5e;
+mod wam;
 
 use std::path::{Path, PathBuf};
 
@@ -43,7 +45,12 @@ pub(crate) fn run(args: &[String]) -> anyhow::Result<()> {
 /// All files: path below `specs/` and text.
 fn files() -> Vec<(PathBuf, String)> {
     let mut all = Vec::new();
-    for (robot, parts) in [("panda", panda::parts()), ("ur5e", ur5e::parts())] {
+    for (robot, parts) in [
+        ("panda", panda::parts()),
+        ("ur5e", ur5e::parts()),
+        ("wam", wam::parts()),
+        ("wam", barrett_hand::parts()),
+    ] {
         let folder = PathBuf::from("robots").join(robot).join("meshes");
         for part in parts {
             all.extend(part.files().map(|(name, mesh)| (folder.join(name + ".obj"), obj::text(mesh))));

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use robotc_core::model::TriMesh;
 
-use super::shape::{annulus, at, circle, join, lathe, prism, rounded_box, tube};
+use super::shape::{annulus, at, circle, join, lathe, prism, tube};
 
 /// All objects by file name.
 pub(crate) fn all() -> Vec<(&'static str, TriMesh)> {
@@ -18,7 +18,8 @@ pub(crate) fn all() -> Vec<(&'static str, TriMesh)> {
     ]
 }
 
-/// A mug, 72 mm wide without its handle (jaws that open to 80 mm fit round it) and 100 mm high, with a wall of 4 mm; the handle points along +x.
+/// A mug, 72 mm wide without its handle (jaws that open to 80 mm fit round it) and 100 mm high, with a wall of 4 mm;
+/// the handle points along +x.
 fn mug() -> TriMesh {
     let body = lathe(
         &[
@@ -100,9 +101,20 @@ fn bolt() -> TriMesh {
 
 /// A block of 70 x 44 mm with a step: 45 mm high, 22 mm at the low end.
 fn stepped_block() -> TriMesh {
-    let moved = |mesh: TriMesh, xyz| mesh.transformed(&at(xyz, [0.0; 3]));
-    join([
-        moved(rounded_box([0.070, 0.044, 0.022], 0.003, 0.0015), [0.0, 0.0, 0.011]),
-        moved(rounded_box([0.038, 0.044, 0.045], 0.003, 0.0015), [-0.016, 0.0, 0.0225]),
-    ])
+    let (half, depth, step) = (0.035, 0.044, 0.003);
+    let profile = [
+        [-half, 0.002],
+        [-half + 0.002, 0.0],
+        [half - 0.002, 0.0],
+        [half, 0.002],
+        [half, 0.020],
+        [half - 0.002, 0.022],
+        [step, 0.022],
+        [step, 0.043],
+        [step - 0.002, 0.045],
+        [-half + 0.002, 0.045],
+        [-half, 0.043],
+    ];
+    let upright = at([0.0, depth / 2.0, 0.0], [PI / 2.0, 0.0, 0.0]);
+    prism(&profile, [-0.016, 0.011], 0.0, depth).transformed(&upright)
 }

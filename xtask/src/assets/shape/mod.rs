@@ -86,6 +86,11 @@ pub(crate) fn moved(mesh: &TriMesh, xyz: [f64; 3]) -> TriMesh {
     mesh.transformed(&at(xyz, [0.0; 3]))
 }
 
+/// Turned so that z becomes x: (x, y, z) goes to (z, y, -x).
+pub(crate) fn along_x(mesh: &TriMesh) -> TriMesh {
+    mesh.transformed(&at([0.0; 3], [0.0, FRAC_PI_2, 0.0]))
+}
+
 /// Turned so that z becomes y: (x, y, z) goes to (x, z, -y).
 pub(crate) fn along_y(mesh: &TriMesh) -> TriMesh {
     mesh.transformed(&at([0.0; 3], [-FRAC_PI_2, 0.0, 0.0]))
