@@ -1,0 +1,251 @@
+//! The pipeline: chain, facts, strategies, program.
+
+use robotc_core::Seed;
+use robotc_core::ik::{IkSolutions, InverseKinematics as _};
+use robotc_core::model::{ChainMotion, SerialChain};
+
+use super::builder::Builder;
+use super::facts::Facts;
+use super::problem::Problem;
+use super::strategies::{self, Strategy};
+use crate::ir::Program;
+use crate::passes;
+use crate::run::Solver;
+
+/// Choices of a compilation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Largest difference between the described chain and the ideal one that is solved: radians and metres. Smaller
+    /// differences are tried first. Zero forbids snapping.
+    pub tolerance: f64,
+    /// Variables whose values the caller will give; `None` chooses: none for up to six variables, and of seven the one
+    /// farthest from the base that leaves a chain that can be solved and moves well.
+    pub free: Option<Vec<usize>>,
+    /// Random poses on which a program must prove itself before it is returned.
+    pub trial_poses: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { tolerance: 2e-3, free: None, trial_poses: 60 }
+    }
+}
+
+/// Why a chain was not solved.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{reason}")]
+pub struct Refusal {
+    /// In one line.
+    pub reason: String,
+    /// Everything that was tried, in order.
+    pub trace: Vec<String>,
+}
+
+/// A solved chain.
+#[derive(Debug, Clone)]
+pub struct Compiled {
+    /// The solution program.
+    pub program: Program,
+    /// Class of the chain and how it is solved.
+    pub class: String,
+    /// Difference between the described chain and the ideal one that the program solves: radians and metres, the larger.
+    pub snap: f64,
+    /// Variables whose values the caller gives.
+    pub free: Vec<usize>,
+    /// Everything that was tried, in order.
+    pub trace: Vec<String>,
+    chain: SerialChain,
+}
+
+impl Compiled {
+    /// The program as text: what [`Solver::from_text`] loads.
+    pub fn text(&self) -> String {
+        self.program.text()
+    }
+
+    /// A solver for the chain that was compiled.
+    pub fn solver(&self) -> Solver {
+        Solver::new(self.program.clone(), &self.chain).expect("the program ran during compilation")
+    }
+
+    /// The chain that was compiled.
+    pub fn chain(&self) -> &SerialChain {
+        &self.chain
+    }
+}
+
+/// Finds a solution program for a chain.
+///
+/// The chain is solved as it is described if a strategy fits it exactly; otherwise relations between its axes that
+/// hold within a growing tolerance are taken as meant. A program is returned only when it solves all of its trial poses.
+pub fn compile(chain: &SerialChain, options: &Options) -> Result<Compiled, Refusal> {
+    let mut trace = Vec::new();
+    let result = search(chain, options, &mut trace);
+    match result {
+        Ok((program, class)) => Ok(Compiled {
+            class,
+            snap: program.snap,
+            free: program.free.clone(),
+            program,
+            trace,
+            chain: chain.clone(),
+        }),
+        Err(reason) => Err(Refusal { reason, trace }),
+    }
+}
+
+fn search(
+    chain: &SerialChain,
+    options: &Options,
+    trace: &mut Vec<String>,
+) -> Result<(Program, String), String> {
+    if Facts::new(chain, 0.0).is_none() {
+        return Err("joints that follow other joints of the chain are not solved yet".into());
+    }
+    if chain.joints.len() > crate::kernel::chain::MAX_JOINTS {
+        return Err(format!("{} joints are too many", chain.joints.len()));
+    }
+    let letters = letters(chain);
+    let choices = match &options.free {
+        Some(free) => vec![checked(free, chain)?],
+        None => super::lock::choices(chain),
+    };
+    let mut last_failure = None;
+    // Rounding of the file itself is never a snap that matters.
+    let ladder = [1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 5e-4, 2e-3, 1e-2];
+    let allowed = ladder.into_iter().filter(|t| *t <= options.tolerance.max(1e-9));
+    for tolerance in allowed {
+        for free in &choices {
+            match attempt(chain, options, free, tolerance, &letters, trace) {
+                Ok(found) => return Ok(found),
+                Err(Some(failure)) => last_failure = Some(failure),
+                Err(None) => {}
+            }
+        }
+    }
+    Err(last_failure.unwrap_or_else(|| refusal(chain, &letters, &choices)))
+}
+
+/// One tolerance and one choice of free variables. An error carries the reason why a program that was found is no good.
+fn attempt(
+    chain: &SerialChain,
+    options: &Options,
+    free: &[usize],
+    tolerance: f64,
+    letters: &str,
+    trace: &mut Vec<String>,
+) -> Result<(Program, String), Option<String>> {
+    let facts = Facts::new(chain, tolerance).ok_or(None)?;
+    let Some(problem) = Problem::new(&facts, free) else {
+        trace.push(format!("free {free:?}: given joints in more than one place between unknown ones"));
+        return Err(None);
+    };
+    let mut failure = None;
+    for Strategy { name, unknowns, write } in strategies::ALL {
+        if *unknowns != problem.axes.len() {
+            continue;
+        }
+        for reversed in [false, true] {
+            let mut problem = if reversed { problem.reversed() } else { problem.clone() };
+            let mut line = format!(
+                "tolerance {tolerance:e}, free {free:?}, {name}{}: ",
+                if reversed { " from the tip" } else { "" }
+            );
+            let builder = Builder::new(chain.variables.len(), free.to_vec());
+            match write(&mut problem, &builder) {
+                Err(reason) => line += &reason,
+                Ok(how) => {
+                    let class = describe(letters, name, reversed, &how, free, chain);
+                    let mut program = builder.finish();
+                    // Below this the difference is rounding of the description, which the check covers.
+                    let snap = problem.snap();
+                    program.snap = if snap < 1e-12 { 0.0 } else { snap };
+                    program.slack = 1e-9 + 4.0 * program.snap;
+                    program.class = class.clone();
+                    let program = passes::optimise(&program);
+                    match trial(&program, chain, options) {
+                        Ok(()) => {
+                            line += &format!("{how}; solved");
+                            trace.push(line);
+                            return Ok((program, class));
+                        }
+                        Err(reason) => {
+                            line += &format!("{how}; {reason}");
+                            failure = Some(format!("{class}: {reason}"));
+                        }
+                    }
+                }
+            }
+            trace.push(line);
+        }
+    }
+    Err(failure)
+}
+
+/// Runs a program on random poses; says how it failed.
+fn trial(program: &Program, chain: &SerialChain, options: &Options) -> Result<(), String> {
+    program.validate().map_err(|e| format!("the program is not valid: {e}"))?;
+    let solver = Solver::new(program.clone(), chain).map_err(|e| e.to_string())?;
+    let mut rng = Seed::new(0).split("ikgen trial").rng();
+    let mut out = IkSolutions::new();
+    let mut solved = 0;
+    for _ in 0..options.trial_poses {
+        let values = crate::report::poses::random(chain, &mut rng);
+        let free: Vec<f64> = program.free.iter().map(|v| values[*v]).collect();
+        solver.solve(&chain.forward(&values), &free, &mut out);
+        solved += usize::from(!out.is_empty());
+    }
+    if solved == options.trial_poses {
+        Ok(())
+    } else {
+        Err(format!("solves only {solved} of {} random poses", options.trial_poses))
+    }
+}
+
+fn checked(free: &[usize], chain: &SerialChain) -> Result<Vec<usize>, String> {
+    let mut sorted = free.to_vec();
+    sorted.sort_unstable();
+    sorted.dedup();
+    match sorted.last() {
+        Some(last) if *last >= chain.variables.len() => Err(format!("the chain has no variable {last}")),
+        _ if sorted.len() >= chain.variables.len() => Err("no variable is left to solve for".into()),
+        _ => Ok(sorted),
+    }
+}
+
+/// `6R`, or the joint types in order when some slide.
+fn letters(chain: &SerialChain) -> String {
+    let all: String =
+        chain.joints.iter().map(|j| if j.motion == ChainMotion::Revolute { 'R' } else { 'P' }).collect();
+    if all.contains('P') { all } else { format!("{}R", all.len()) }
+}
+
+fn describe(letters: &str, name: &str, reversed: bool, how: &str, free: &[usize], chain: &SerialChain) -> String {
+    let name = match (name, reversed) {
+        ("spherical wrist", true) => "spherical shoulder",
+        ("three parallel axes", false) => "three parallel axes 2-3-4",
+        ("three parallel axes", true) => "three parallel axes 3-4-5",
+        (name, _) => name,
+    };
+    let mut class = format!("{letters} {name}, {how}");
+    if reversed {
+        class += " (from the tip)";
+    }
+    let names: Vec<&str> = free.iter().map(|v| chain.variables[*v].name.as_str()).collect();
+    if !names.is_empty() {
+        class += &format!(", {} given", names.join(" and "));
+    }
+    class
+}
+
+fn refusal(chain: &SerialChain, letters: &str, choices: &[Vec<usize>]) -> String {
+    let n = chain.variables.len();
+    match n {
+        _ if choices.is_empty() => format!("{letters}: name the free joints, {} of them", n.saturating_sub(6)),
+        6 => format!(
+            "{letters} without a triple: no three consecutive axes at an end meet, and axes 2-3-4 or 3-4-5 are not parallel"
+        ),
+        7 => format!("{letters} without a triple: no joint can be given so that the rest has one"),
+        _ => format!("{letters}: no strategy for this class yet"),
+    }
+}

@@ -1,0 +1,70 @@
+//! Which joints of a redundant chain are given by the caller.
+
+use nalgebra::Matrix6;
+use robotc_core::Seed;
+use robotc_core::model::{ChainMotion, SerialChain};
+
+/// Choices of free variables, best first: none for up to six variables; of seven each one that leaves a chain that
+/// moves well, farthest from the base first; no choice beyond seven.
+pub(super) fn choices(chain: &SerialChain) -> Vec<Vec<usize>> {
+    match chain.variables.len() {
+        0..=6 => vec![Vec::new()],
+        7 => {
+            let score: Vec<f64> = (0..7).map(|v| freedom_without(chain, v)).collect();
+            let best = score.iter().fold(0.0, |a: f64, b| a.max(*b));
+            // A joint whose loss costs most of the freedom (an elbow) is a poor one to give, though not a forbidden one.
+            let (mut good, poor): (Vec<usize>, Vec<usize>) = (0..7).rev().partition(|v| score[*v] > 0.2 * best);
+            good.extend(poor.into_iter().filter(|v| score[*v] > 1e-6 * best));
+            good.into_iter().map(|v| vec![v]).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Mean volume of the Jacobian (per radian and metre) without one variable.
+fn freedom_without(chain: &SerialChain, variable: usize) -> f64 {
+    let mut rng = Seed::new(0).split("ikgen lock").rng();
+    let mut sum = 0.0;
+    for _ in 0..200 {
+        let values = crate::report::poses::random(chain, &mut rng);
+        sum += jacobian_determinant(chain, &values, &[variable]).unwrap_or(0.0).abs();
+    }
+    sum
+}
+
+/// Determinant of the Jacobian at the tip without the `given` variables; `None` unless six remain.
+pub(crate) fn jacobian_determinant(chain: &SerialChain, values: &[f64], given: &[usize]) -> Option<f64> {
+    let columns = jacobian(chain, values);
+    let left: Vec<usize> = (0..columns.len()).filter(|v| !given.contains(v)).collect();
+    if left.len() != 6 {
+        return None;
+    }
+    Some(Matrix6::from_fn(|i, j| columns[left[j]][i]).determinant())
+}
+
+/// Columns of the Jacobian: velocity of the tip, then angular velocity, in the base frame.
+fn jacobian(chain: &SerialChain, values: &[f64]) -> Vec<[f64; 6]> {
+    let tip = chain.forward(values).translation.vector;
+    let mut columns = vec![[0.0; 6]; chain.variables.len()];
+    let mut at = robotc_core::Pose::identity();
+    for joint in &chain.joints {
+        at *= joint.previous_from_joint;
+        let axis = at.rotation * joint.axis.into_inner();
+        let value = joint.multiplier * values[joint.variable] + joint.offset;
+        let (linear, angular) = match joint.motion {
+            ChainMotion::Revolute => (axis.cross(&(tip - at.translation.vector)), axis),
+            ChainMotion::Prismatic => (axis, nalgebra::Vector3::zeros()),
+        };
+        for i in 0..3 {
+            columns[joint.variable][i] += joint.multiplier * linear[i];
+            columns[joint.variable][3 + i] += joint.multiplier * angular[i];
+        }
+        match joint.motion {
+            ChainMotion::Revolute => {
+                at.rotation *= nalgebra::UnitQuaternion::from_axis_angle(&joint.axis, value);
+            }
+            ChainMotion::Prismatic => at.translation.vector += axis * value,
+        }
+    }
+    columns
+}

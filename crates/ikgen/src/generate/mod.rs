@@ -1,0 +1,10 @@
+//! From a serial chain to a solution program.
+
+pub mod builder;
+pub mod compile;
+pub mod facts;
+pub(crate) mod lock;
+pub mod problem;
+pub mod strategies;
+
+pub use compile::{Compiled, Options, Refusal, compile};

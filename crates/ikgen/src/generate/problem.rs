@@ -1,0 +1,220 @@
+//! The loop equation in the form strategies work on: a product of motions equals the wanted motion.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::builder::{Builder, Move, Scalar, Turn, Vector};
+use super::facts::{Axis, Facts, tidy};
+
+/// `e_1 e_2 ... e_n = G`: unknown motions about axes given at zero, and the motion that takes the tip from its pose at zero
+/// to the wanted one.
+///
+/// A problem may be turned round (`reversed`): then the product is that of the inverse motions, tip to base.
+#[derive(Debug, Clone)]
+pub struct Problem {
+    /// The unknown axes, in the order of the product.
+    pub axes: Vec<Axis>,
+    /// A given motion between unknown ones: number of unknowns before it, and its axis.
+    pub given: Option<(usize, Axis)>,
+    /// Given motions before and after all unknown ones.
+    outer: (Vec<Axis>, Vec<Axis>),
+    reversed: bool,
+    facts: Facts,
+    free: Vec<usize>,
+}
+
+impl Problem {
+    /// The problem of a chain with these variables given; `None` when given joints are in more than one inner place.
+    pub fn new(facts: &Facts, free: &[usize]) -> Option<Self> {
+        let mut axes = Vec::new();
+        let mut given: Option<(usize, Axis)> = None;
+        let mut outer = (Vec::new(), Vec::new());
+        let is_free = |a: &Axis| free.contains(&a.variable);
+        let last_unknown = facts.ideal.iter().rposition(|a| !is_free(a))?;
+        for (i, axis) in facts.ideal.iter().enumerate() {
+            if !is_free(axis) {
+                axes.push(*axis);
+            } else if axes.is_empty() {
+                outer.0.push(*axis);
+            } else if i > last_unknown {
+                outer.1.push(*axis);
+            } else if given.replace((axes.len(), *axis)).is_some() {
+                return None;
+            }
+        }
+        Some(Self { axes, given, outer, reversed: false, facts: facts.clone(), free: free.to_vec() })
+    }
+
+    /// The same equation inverted: tip to base.
+    pub fn reversed(&self) -> Self {
+        let mut turned = self.clone();
+        turned.axes.reverse();
+        let count = turned.axes.len();
+        for axis in turned.axes.iter_mut().chain(turned.given.as_mut().map(|(_, a)| a)) {
+            axis.direction = -axis.direction;
+        }
+        if let Some((before, _)) = &mut turned.given {
+            *before = count - *before;
+        }
+        turned.reversed = !self.reversed;
+        turned
+    }
+
+    /// Tolerance of relations between axes.
+    pub fn tolerance(&self) -> f64 {
+        self.facts.tolerance
+    }
+
+    /// How far the axes, as a strategy left them, are from the described ones.
+    pub fn snap(&self) -> f64 {
+        let sign = if self.reversed { -1.0 } else { 1.0 };
+        let mut ideal = self.facts.ideal.clone();
+        for axis in self.axes.iter().chain(self.given.as_ref().map(|(_, a)| a)) {
+            let same = ideal.iter_mut().find(|a| a.variable == axis.variable).expect("axes come from the facts");
+            *same = Axis { direction: axis.direction * sign, ..*axis };
+        }
+        super::facts::snap_between(&self.facts.described, &ideal)
+    }
+
+    /// The wanted motion `G` of this problem.
+    pub fn goal<'b>(&self, b: &'b Builder) -> Motion<'b> {
+        let turn = self.facts.canonical_from_base;
+        let mut rows = b.rotation();
+        let mut position = b.position();
+        if turn != UnitQuaternion::identity() {
+            rows = product(&constant_rows(b, &turn), &rows);
+            let t = constant_rows(b, &turn);
+            position = Vector(t.map(|row| row.dot(position)));
+        }
+        // G = canonical_from_tip (wanted) * tip_from_canonical (zero)
+        let zero = self.facts.tip.inverse();
+        let rows_g = product(&rows, &constant_rows(b, &zero.rotation));
+        let shift = b.vector(&zero.translation.vector.map(tidy));
+        let position = Vector(rows.map(|row| row.dot(shift))) + position;
+        let mut motion = Motion { rows: rows_g, position };
+        for axis in &self.outer.0 {
+            let undo = self.move_of(b, axis).back();
+            motion = Motion {
+                rows: transpose(&transpose(&motion.rows).map(|c| undo.rotate(b, axis, c))),
+                position: undo.apply(b, axis, motion.position),
+            };
+        }
+        for axis in self.outer.1.iter().rev() {
+            // G e^-1, column by column.
+            let undo = self.move_of(b, axis).back();
+            let basis = [Vector3::x(), Vector3::y(), Vector3::z()].map(|v| b.vector(&v));
+            let columns = basis.map(|v| motion.rotate(undo.rotate(b, axis, v)));
+            let origin = undo.apply(b, axis, b.vector(&Vector3::zeros()));
+            motion = Motion { position: motion.apply(origin), rows: transpose(&columns) };
+        }
+        if self.reversed { motion.inverse() } else { motion }
+    }
+
+    /// The motion of a given axis.
+    pub fn move_of<'b>(&self, b: &'b Builder, axis: &Axis) -> Move<'b> {
+        let k = self.free.iter().position(|v| *v == axis.variable).expect("only free axes are given");
+        let value = b.free(k as u8);
+        match axis.motion {
+            robotc_core::model::ChainMotion::Revolute => Move::Turn(b.turn_of(value)),
+            robotc_core::model::ChainMotion::Prismatic => Move::Slide(value),
+        }
+    }
+
+    /// Emits a solution: the motion of each unknown axis, in the order of this problem.
+    pub fn emit(&self, b: &Builder, moves: &[Move<'_>]) {
+        let mut all: Vec<Option<Move<'_>>> = vec![None; self.facts.ideal.len()];
+        for (axis, step) in self.axes.iter().zip(moves) {
+            all[axis.variable] = Some(*step);
+        }
+        let given = self.given.as_ref().map(|(_, a)| a);
+        for axis in self.outer.0.iter().chain(&self.outer.1).chain(given) {
+            all[axis.variable] = Some(self.move_of(b, axis));
+        }
+        let all: Vec<Move<'_>> = all.into_iter().map(|m| m.expect("every variable is unknown or given")).collect();
+        b.emit(&all);
+    }
+
+    /// Number of the joint of an unknown axis, from 1 at the base: names of its cosine and sine.
+    pub fn name(&self, i: usize) -> String {
+        (self.axes[i].variable + 1).to_string()
+    }
+}
+
+/// A rigid motion as expressions.
+#[derive(Clone, Copy)]
+pub struct Motion<'b> {
+    rows: [Vector<'b>; 3],
+    position: Vector<'b>,
+}
+
+impl<'b> Motion<'b> {
+    /// A direction after the motion.
+    pub fn rotate(&self, v: Vector<'b>) -> Vector<'b> {
+        Vector(self.rows.map(|row| row.dot(v)))
+    }
+
+    /// A point after the motion.
+    pub fn apply(&self, p: Vector<'b>) -> Vector<'b> {
+        self.rotate(p) + self.position
+    }
+
+    fn inverse(&self) -> Self {
+        let rows = transpose(&self.rows);
+        let back = Motion { rows, position: self.position };
+        Motion { rows, position: -back.rotate(self.position) }
+    }
+}
+
+impl<'b> Move<'b> {
+    /// The opposite motion.
+    pub fn back(self) -> Self {
+        match self {
+            Move::Turn(t) => Move::Turn(t.back()),
+            Move::Slide(x) => Move::Slide(-x),
+        }
+    }
+
+    /// A direction after this motion about `axis`.
+    pub fn rotate(self, b: &'b Builder, axis: &Axis, v: Vector<'b>) -> Vector<'b> {
+        match self {
+            Move::Turn(t) => v.turned(b.vector(&axis.direction), t),
+            Move::Slide(_) => v,
+        }
+    }
+
+    /// A point after this motion about `axis`.
+    pub fn apply(self, b: &'b Builder, axis: &Axis, p: Vector<'b>) -> Vector<'b> {
+        match self {
+            Move::Turn(t) => {
+                let foot = b.vector(&axis.point);
+                foot + (p - foot).turned(b.vector(&axis.direction), t)
+            }
+            Move::Slide(x) => p + b.vector(&axis.direction) * x,
+        }
+    }
+}
+
+impl<'b> From<Turn<'b>> for Move<'b> {
+    fn from(turn: Turn<'b>) -> Self {
+        Move::Turn(turn)
+    }
+}
+
+impl<'b> From<Scalar<'b>> for Move<'b> {
+    fn from(length: Scalar<'b>) -> Self {
+        Move::Slide(length)
+    }
+}
+
+fn constant_rows<'b>(b: &'b Builder, turn: &UnitQuaternion<f64>) -> [Vector<'b>; 3] {
+    let m = turn.to_rotation_matrix();
+    [0, 1, 2].map(|i| b.vector(&Vector3::new(tidy(m[(i, 0)]), tidy(m[(i, 1)]), tidy(m[(i, 2)]))))
+}
+
+fn transpose<'b>(m: &[Vector<'b>; 3]) -> [Vector<'b>; 3] {
+    [0, 1, 2].map(|j| Vector([0, 1, 2].map(|i| m[i].0[j])))
+}
+
+fn product<'b>(a: &[Vector<'b>; 3], b: &[Vector<'b>; 3]) -> [Vector<'b>; 3] {
+    let columns = transpose(b);
+    a.map(|row| Vector(columns.map(|column| row.dot(column))))
+}

@@ -1,0 +1,25 @@
+//! The ways to solve a chain: one file each, one line in [`ALL`].
+
+mod orient;
+mod reach;
+mod spherical_wrist;
+mod three_parallel;
+
+use super::builder::Builder;
+use super::problem::Problem;
+
+/// A way to solve a class of chains.
+pub struct Strategy {
+    /// Its name in traces.
+    pub name: &'static str,
+    /// Number of unknown joints it is for.
+    pub unknowns: usize,
+    /// Writes the program, and adapts the axes of the problem to the ideal ones it solves. Says why if it cannot.
+    pub write: fn(&mut Problem, &Builder) -> Result<String, String>,
+}
+
+/// All strategies, in the order in which they are tried.
+pub const ALL: &[Strategy] = &[
+    Strategy { name: "spherical wrist", unknowns: 6, write: spherical_wrist::write },
+    Strategy { name: "three parallel axes", unknowns: 6, write: three_parallel::write },
+];

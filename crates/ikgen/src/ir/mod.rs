@@ -1,0 +1,233 @@
+//! The solution language: see the crate's documentation for what its words mean.
+
+pub mod expr;
+mod parse;
+mod print;
+mod validate;
+
+pub use expr::{Binary, Expr, Exprs, Node, Unary, Var};
+pub use parse::TextError;
+pub use validate::Invalid;
+
+/// What a `for-each-root` statement solves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum RootKind {
+    /// `align x y -> c s`: the angle along (x, y); any angle when both vanish.
+    Align,
+    /// `mirror x y -> c s`: the two angles along (x, y) and (x, -y).
+    Mirror,
+    /// `circle a b d -> c s`: `a cos + b sin = d`.
+    Circle,
+    /// `conic a b c d e f -> c s`: `a cos^2 + b cos sin + c sin^2 + d cos + e sin + f = 0`.
+    Conic,
+    /// `quadratic a b c -> t`: `a t^2 + b t + c = 0`.
+    Quadratic,
+}
+
+impl RootKind {
+    /// All kinds.
+    pub const ALL: [RootKind; 5] = [Self::Align, Self::Mirror, Self::Circle, Self::Conic, Self::Quadratic];
+
+    /// Its word in the text form.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Align => "align",
+            Self::Mirror => "mirror",
+            Self::Circle => "circle",
+            Self::Conic => "conic",
+            Self::Quadratic => "quadratic",
+        }
+    }
+
+    /// Number of arguments.
+    pub fn arguments(self) -> usize {
+        match self {
+            Self::Align | Self::Mirror => 2,
+            Self::Circle | Self::Quadratic => 3,
+            Self::Conic => 6,
+        }
+    }
+
+    /// Number of names bound: cosine and sine of an angle, or one length.
+    pub fn outputs(self) -> usize {
+        if self == Self::Quadratic { 1 } else { 2 }
+    }
+
+    /// The roots for these argument values.
+    pub fn solve(self, x: &[f64], slack: f64) -> crate::kernel::roots::Roots {
+        use crate::kernel::roots;
+        match self {
+            Self::Align => roots::align(x[0], x[1]),
+            Self::Mirror => roots::mirror(x[0], x[1]),
+            Self::Circle => roots::circle(x[0], x[1], x[2], slack),
+            Self::Conic => roots::conic([x[0], x[1], x[2], x[3], x[4], x[5]], slack),
+            Self::Quadratic => roots::quadratic(x[0], x[1], x[2], slack),
+        }
+    }
+}
+
+/// How an emitted solution gives one variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Value {
+    /// An angle by cosine and sine.
+    Angle(Expr, Expr),
+    /// A length.
+    Length(Expr),
+}
+
+impl Value {
+    /// The expressions in it.
+    pub fn exprs(&self) -> impl Iterator<Item = Expr> {
+        let (a, b) = match *self {
+            Value::Angle(c, s) => (c, Some(s)),
+            Value::Length(x) => (x, None),
+        };
+        std::iter::once(a).chain(b)
+    }
+}
+
+/// A structured statement.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Stmt {
+    /// A name for a value.
+    Let {
+        /// The name.
+        var: Var,
+        /// The value.
+        value: Expr,
+    },
+    /// Runs the body once for each root.
+    ForEach {
+        /// The equation.
+        kind: RootKind,
+        /// Its arguments.
+        args: Vec<Expr>,
+        /// The names bound in the body.
+        out: Vec<Var>,
+        /// What is done for each root.
+        body: Block,
+    },
+    /// Runs one of two blocks.
+    IfZero {
+        /// Compared in magnitude.
+        value: Expr,
+        /// With this.
+        tolerance: f64,
+        /// Where it is smaller.
+        then: Block,
+        /// Where it is not.
+        otherwise: Block,
+    },
+    /// A candidate solution: one value for each variable.
+    Emit(Vec<Value>),
+    /// Why the following statements hold; for readers and for the comments of generated sources.
+    Note(String),
+}
+
+/// Statements in order.
+pub type Block = Vec<Stmt>;
+
+/// A solution program: from a pose and the free values to candidate solutions.
+#[derive(Debug, Clone)]
+pub struct Program {
+    /// What kind of chain this is and how it is solved, in words.
+    pub class: String,
+    /// Number of variables of the chain.
+    pub variables: usize,
+    /// Variables whose value the caller gives, ascending.
+    pub free: Vec<usize>,
+    /// How far the ideal chain of the program is from the described one (metres, radians; the larger).
+    pub snap: f64,
+    /// How far an equation may be from having a root and still be tried at its nearest point.
+    pub slack: f64,
+    /// Expressions.
+    pub exprs: Exprs,
+    /// The name of each [`Var`].
+    pub names: Vec<String>,
+    /// Statements.
+    pub body: Block,
+}
+
+impl Program {
+    /// A new name: `wanted`, or `wanted_2`, `wanted_3` … when taken.
+    pub fn bind(&mut self, wanted: &str) -> Var {
+        let mut name = wanted.to_owned();
+        let mut number = 1;
+        while self.names.contains(&name) {
+            number += 1;
+            name = format!("{wanted}_{number}");
+        }
+        self.names.push(name);
+        Var(self.names.len() as u32 - 1)
+    }
+
+    /// The text form; [`from_text`](Self::from_text) reads it back.
+    pub fn text(&self) -> String {
+        print::program(self)
+    }
+
+    /// Reads the text form and validates it.
+    pub fn from_text(text: &str) -> Result<Self, TextError> {
+        let program = parse::program(text)?;
+        program.validate().map_err(|invalid| TextError { line: 0, message: invalid.to_string() })?;
+        Ok(program)
+    }
+
+    /// Checks that every name is bound before use, counts agree and numbers are finite.
+    pub fn validate(&self) -> Result<(), Invalid> {
+        validate::program(self)
+    }
+
+    /// The text of one expression.
+    pub fn expr_text(&self, e: Expr) -> String {
+        print::expr(self, e)
+    }
+}
+
+/// Calls `f` on each expression directly used by a statement, not by the statements nested in it.
+pub fn exprs_of(stmt: &Stmt, mut f: impl FnMut(Expr)) {
+    match stmt {
+        Stmt::Let { value, .. } | Stmt::IfZero { value, .. } => f(*value),
+        Stmt::ForEach { args, .. } => args.iter().for_each(|e| f(*e)),
+        Stmt::Emit(values) => values.iter().flat_map(Value::exprs).for_each(f),
+        Stmt::Note(_) => {}
+    }
+}
+
+/// The blocks nested in a statement.
+pub fn blocks_of(stmt: &Stmt) -> Vec<&Block> {
+    match stmt {
+        Stmt::ForEach { body, .. } => vec![body],
+        Stmt::IfZero { then, otherwise, .. } => vec![then, otherwise],
+        _ => Vec::new(),
+    }
+}
+
+/// The same statement with its direct expressions and nested blocks replaced.
+pub fn map_stmt(stmt: &Stmt, expr: &mut dyn FnMut(Expr) -> Expr) -> Stmt {
+    match stmt {
+        Stmt::Let { var, value } => Stmt::Let { var: *var, value: expr(*value) },
+        Stmt::ForEach { kind, args, out, body } => Stmt::ForEach {
+            kind: *kind,
+            args: args.iter().map(|e| expr(*e)).collect(),
+            out: out.clone(),
+            body: body.clone(),
+        },
+        Stmt::IfZero { value, tolerance, then, otherwise } => Stmt::IfZero {
+            value: expr(*value),
+            tolerance: *tolerance,
+            then: then.clone(),
+            otherwise: otherwise.clone(),
+        },
+        Stmt::Emit(values) => Stmt::Emit(
+            values
+                .iter()
+                .map(|v| match *v {
+                    Value::Angle(c, s) => Value::Angle(expr(c), expr(s)),
+                    Value::Length(x) => Value::Length(expr(x)),
+                })
+                .collect(),
+        ),
+        Stmt::Note(text) => Stmt::Note(text.clone()),
+    }
+}

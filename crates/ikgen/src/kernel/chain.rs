@@ -1,0 +1,222 @@
+//! Forward kinematics of the true chain, and the check and polish that every solution passes.
+
+use super::math::{cos_sin, sqrt};
+
+/// Most joints of a chain.
+pub const MAX_JOINTS: usize = 12;
+
+/// A solution is returned only when position (metres) and rotation (Frobenius norm) agree with the pose to this.
+pub const TOLERANCE: f64 = 1e-9;
+
+/// A solution that agrees to this is not polished.
+pub const EXACT: f64 = 1e-10;
+
+/// A rigid transform: rotation rows, then position.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Rotation matrix, row by row.
+    pub rotation: [[f64; 3]; 3],
+    /// Position in metres.
+    pub position: [f64; 3],
+}
+
+/// A moving joint whose axis is the z axis of its own frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Link {
+    /// Pose of the joint frame in the frame after the previous joint.
+    pub previous_from_joint: Frame,
+    /// Whether it slides along its axis instead of turning about it.
+    pub slides: bool,
+    /// Which variable moves it.
+    pub variable: usize,
+    /// Joint value for each unit of the variable: 1 unless the joint follows another.
+    pub ratio: f64,
+}
+
+impl Frame {
+    /// The product of two transforms.
+    pub fn times(&self, other: &Frame) -> Frame {
+        let (a, b) = (&self.rotation, &other.rotation);
+        let mut out = *self;
+        for i in 0..3 {
+            for j in 0..3 {
+                out.rotation[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
+            }
+            let p = &other.position;
+            out.position[i] += a[i][0] * p[0] + a[i][1] * p[1] + a[i][2] * p[2];
+        }
+        out
+    }
+
+    /// This frame after its joint has moved; `step` is `[cos, sin]`, or `[length, _]` for a sliding joint.
+    fn moved(&self, slides: bool, step: [f64; 2]) -> Frame {
+        let mut out = *self;
+        for i in 0..3 {
+            let row = &mut out.rotation[i];
+            if slides {
+                out.position[i] += step[0] * row[2];
+            } else {
+                let [x, y, z] = *row;
+                *row = [step[0] * x + step[1] * y, step[0] * y - step[1] * x, z];
+            }
+        }
+        out
+    }
+
+    /// Distance of two poses: the larger of metres and Frobenius norm of the rotation difference.
+    pub fn distance(&self, other: &Frame) -> f64 {
+        let (mut rotation, mut position) = (0.0, 0.0);
+        for i in 0..3 {
+            for j in 0..3 {
+                let d = self.rotation[i][j] - other.rotation[i][j];
+                rotation += d * d;
+            }
+            let d = self.position[i] - other.position[i];
+            position += d * d;
+        }
+        // A NaN must not pass as the smaller of the two.
+        sqrt(if rotation > position { rotation } else { position }) + 0.0 * (rotation + position)
+    }
+}
+
+/// `base_from_tip` where each joint has moved by its `[cos, sin]` or `[length, _]`.
+pub fn forward(links: &[Link], last_from_tip: &Frame, steps: &[[f64; 2]]) -> Frame {
+    let mut at = links[0].previous_from_joint.moved(links[0].slides, steps[0]);
+    for (link, step) in links.iter().zip(steps).skip(1) {
+        at = at.times(&link.previous_from_joint).moved(link.slides, *step);
+    }
+    at.times(last_from_tip)
+}
+
+/// Brings `values` onto the pose by damped Newton steps on the true chain; the variables marked in `held` stay.
+///
+/// Returns the distance that is left. The values are changed only where that made the distance smaller.
+pub fn polish(
+    links: &[Link],
+    last_from_tip: &Frame,
+    base_from_tip: &Frame,
+    values: &mut [f64],
+    held: &[bool],
+) -> f64 {
+    let n = values.len();
+    let mut damping = 1e-14;
+    let (mut distance, mut error, mut columns) = linearise(links, last_from_tip, base_from_tip, values);
+    for _ in 0..20 {
+        if !(distance > 1e-14) {
+            break;
+        }
+        let mut normal = [[0.0; MAX_JOINTS]; MAX_JOINTS];
+        let mut right = [0.0; MAX_JOINTS];
+        for i in 0..n {
+            for j in 0..=i {
+                let mut sum = 0.0;
+                for k in 0..6 {
+                    sum += columns[i][k] * columns[j][k];
+                }
+                normal[i][j] = if held[i] || held[j] { 0.0 } else { sum };
+            }
+            normal[i][i] = if held[i] { 1.0 } else { normal[i][i] + damping + 1e-3 * distance * distance };
+            for k in 0..6 {
+                right[i] += columns[i][k] * error[k];
+            }
+            if held[i] {
+                right[i] = 0.0;
+            }
+        }
+        solve_symmetric(&mut normal, &mut right, n);
+        let mut next = [0.0; MAX_JOINTS];
+        for i in 0..n {
+            next[i] = values[i] + right[i].clamp(-0.5, 0.5);
+        }
+        let trial = linearise(links, last_from_tip, base_from_tip, &next[..n]);
+        if trial.0 < distance {
+            let slow = trial.0 > 0.5 * distance;
+            values.copy_from_slice(&next[..n]);
+            (distance, error, columns) = trial;
+            if slow && distance < TOLERANCE {
+                break;
+            }
+        } else {
+            if distance < TOLERANCE {
+                break;
+            }
+            damping = if damping < 1e-9 { 1e-9 } else { damping * 100.0 };
+            if damping > 1.0 {
+                break;
+            }
+        }
+    }
+    distance
+}
+
+/// Distance to the pose, its six-vector (metres, radians), and the column of each variable.
+fn linearise(
+    links: &[Link],
+    last_from_tip: &Frame,
+    base_from_tip: &Frame,
+    values: &[f64],
+) -> (f64, [f64; 6], [[f64; 6]; MAX_JOINTS]) {
+    let mut at = Frame { rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], position: [0.0; 3] };
+    let mut axes = [([0.0; 3], [0.0; 3]); MAX_JOINTS];
+    for (link, axis) in links.iter().zip(&mut axes) {
+        at = at.times(&link.previous_from_joint);
+        *axis = (at.rotation.map(|row| row[2]), at.position);
+        let value = link.ratio * values[link.variable];
+        at = at.moved(link.slides, if link.slides { [value, 0.0] } else { cos_sin(value) });
+    }
+    at = at.times(last_from_tip);
+    let mut error = [0.0; 6];
+    for i in 0..3 {
+        error[i] = base_from_tip.position[i] - at.position[i];
+    }
+    for column in 0..3 {
+        let a = at.rotation.map(|row| row[column]);
+        let b = base_from_tip.rotation.map(|row| row[column]);
+        let turn = cross(a, b);
+        for i in 0..3 {
+            error[3 + i] += 0.5 * turn[i];
+        }
+    }
+    let mut columns = [[0.0; 6]; MAX_JOINTS];
+    for (link, (z, p)) in links.iter().zip(&axes) {
+        let column = &mut columns[link.variable];
+        let arm = [at.position[0] - p[0], at.position[1] - p[1], at.position[2] - p[2]];
+        let linear = if link.slides { *z } else { cross(*z, arm) };
+        for i in 0..3 {
+            column[i] += link.ratio * linear[i];
+            if !link.slides {
+                column[3 + i] += link.ratio * z[i];
+            }
+        }
+    }
+    (at.distance(base_from_tip), error, columns)
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Solves a positive definite system in place (Cholesky); `right` becomes the solution.
+fn solve_symmetric(m: &mut [[f64; MAX_JOINTS]; MAX_JOINTS], right: &mut [f64; MAX_JOINTS], n: usize) {
+    for j in 0..n {
+        for i in j..n {
+            let mut sum = m[i][j];
+            for k in 0..j {
+                sum -= m[i][k] * m[j][k];
+            }
+            m[i][j] = if i == j { sqrt(if sum > 1e-18 { sum } else { 1e-18 }) } else { sum / m[j][j] };
+        }
+    }
+    for i in 0..n {
+        for k in 0..i {
+            right[i] -= m[i][k] * right[k];
+        }
+        right[i] /= m[i][i];
+    }
+    for i in (0..n).rev() {
+        for k in i + 1..n {
+            right[i] -= m[k][i] * right[k];
+        }
+        right[i] /= m[i][i];
+    }
+}

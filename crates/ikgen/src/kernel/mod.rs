@@ -1,0 +1,17 @@
+//! The numeric kernel: elementary functions, root finders, and the check and polish of solutions.
+//!
+//! These files are plain `core` Rust over `f64` and fixed arrays, with no allocation and no dependency, for one
+//! reason: the Rust back end copies them verbatim into generated sources. What a generated file runs is what
+//! the interpreter and the bytecode run.
+
+pub mod chain;
+pub mod math;
+pub mod roots;
+
+/// Source text of the kernel files, as generated files carry it.
+#[cfg(feature = "generate")]
+pub(crate) const SOURCES: [(&str, &str); 3] = [
+    ("math", include_str!("math.rs")),
+    ("roots", include_str!("roots.rs")),
+    ("chain", include_str!("chain.rs")),
+];

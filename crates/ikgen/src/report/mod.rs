@@ -1,0 +1,3 @@
+//! Proof of a solver over random and singular poses.
+
+pub mod poses;

@@ -1,0 +1,342 @@
+//! Programs as straight runs of three-address instructions over a small register file.
+
+use crate::ir::{Binary, Block, Expr, Node, Program, RootKind, Stmt, Unary, Value, Var};
+use crate::kernel::chain::{Frame, MAX_JOINTS};
+
+/// A program that needs more registers than the machine has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("the program needs {0} registers, the bytecode has {MAX_REGISTERS}")]
+pub struct TooLarge(usize);
+
+/// Registers of the largest machine.
+const MAX_REGISTERS: usize = 4096;
+
+/// Twelve pose entries come first, then free values, then constants, then names, then temporaries.
+const POSE_REGISTERS: usize = 12;
+
+#[derive(Debug, Clone, Copy)]
+enum Op {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    Min,
+    Max,
+    Neg,
+    Sqrt,
+    Sin,
+    Cos,
+    Copy,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    op: Op,
+    to: u16,
+    a: u16,
+    b: u16,
+}
+
+#[derive(Debug, Clone)]
+enum Item {
+    Steps { from: u32, to: u32 },
+    ForEach { kind: RootKind, args: [u16; 6], out: [u16; 2], outputs: u8, body: Vec<Item> },
+    IfZero { value: u16, tolerance: f64, then: Vec<Item>, otherwise: Vec<Item> },
+    Emit { from: u32, to: u32 },
+}
+
+/// A program made ready to run: no lookup, no allocation.
+#[derive(Debug, Clone)]
+pub struct Bytecode {
+    steps: Vec<Step>,
+    /// Register pairs of emitted values.
+    emitted: Vec<[u16; 2]>,
+    body: Vec<Item>,
+    first_constant: usize,
+    constants: Vec<f64>,
+    registers: usize,
+    slack: f64,
+}
+
+impl Bytecode {
+    /// Translates a valid program.
+    pub fn new(program: &Program) -> Result<Self, TooLarge> {
+        let first_constant = POSE_REGISTERS + program.free.len();
+        let mut constants: Vec<u64> = Vec::new();
+        for i in 0..program.exprs.len() {
+            if let Node::Const(bits) = program.exprs.node(Expr(i as u32)) {
+                constants.push(bits);
+            }
+        }
+        constants.push(0);
+        constants.sort_unstable();
+        constants.dedup();
+        let first_name = first_constant + constants.len();
+        let mut t = Translator {
+            program,
+            steps: Vec::new(),
+            emitted: Vec::new(),
+            constants,
+            first_constant,
+            first_name,
+            first_temporary: first_name + program.names.len(),
+            high_water: 0,
+        };
+        t.high_water = t.first_temporary;
+        let body = t.block(&program.body);
+        if t.high_water > MAX_REGISTERS {
+            return Err(TooLarge(t.high_water));
+        }
+        Ok(Self {
+            steps: t.steps,
+            emitted: t.emitted,
+            body,
+            first_constant,
+            constants: t.constants.iter().map(|b| f64::from_bits(*b)).collect(),
+            registers: t.high_water,
+            slack: program.slack,
+        })
+    }
+
+    /// Number of arithmetic instructions.
+    pub fn instructions(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Runs the program and offers each emitted candidate: `[cos, sin]` or `[length, 0]` of each variable.
+    ///
+    /// `offer` says whether the candidate was accepted; returns how many were.
+    pub fn run(
+        &self,
+        base_from_tip: &Frame,
+        free: &[f64],
+        offer: &mut impl FnMut(&[[f64; 2]]) -> bool,
+    ) -> usize {
+        // The smallest file that fits, since clearing it is part of the cost of a call.
+        match self.registers {
+            0..=256 => self.run_in(&mut [0.0; 256], base_from_tip, free, offer),
+            257..=512 => self.run_in(&mut [0.0; 512], base_from_tip, free, offer),
+            513..=1024 => self.run_in(&mut [0.0; 1024], base_from_tip, free, offer),
+            _ => self.run_in(&mut [0.0; MAX_REGISTERS], base_from_tip, free, offer),
+        }
+    }
+
+    fn run_in<const N: usize>(
+        &self,
+        registers: &mut [f64; N],
+        base_from_tip: &Frame,
+        free: &[f64],
+        offer: &mut impl FnMut(&[[f64; 2]]) -> bool,
+    ) -> usize {
+        for i in 0..3 {
+            registers[3 * i..3 * i + 3].copy_from_slice(&base_from_tip.rotation[i]);
+        }
+        registers[9..12].copy_from_slice(&base_from_tip.position);
+        registers[POSE_REGISTERS..self.first_constant].copy_from_slice(free);
+        registers[self.first_constant..][..self.constants.len()].copy_from_slice(&self.constants);
+        self.block(&self.body, registers, offer)
+    }
+
+    fn block<const N: usize>(
+        &self,
+        items: &[Item],
+        x: &mut [f64; N],
+        offer: &mut impl FnMut(&[[f64; 2]]) -> bool,
+    ) -> usize {
+        // N is a power of two: the mask replaces the bounds check.
+        let at = |i: u16| usize::from(i) & (N - 1);
+        let mut accepted = 0;
+        for item in items {
+            match item {
+                Item::Steps { from, to } => {
+                    for step in &self.steps[*from as usize..*to as usize] {
+                        let (a, b) = (x[at(step.a)], x[at(step.b)]);
+                        x[at(step.to)] = match step.op {
+                            Op::Add => a + b,
+                            Op::Sub => a - b,
+                            Op::Mul => a * b,
+                            Op::Div => a / b,
+                            Op::Neg => -a,
+                            Op::Copy => a,
+                            Op::Min => Binary::Min.apply(a, b),
+                            Op::Max => Binary::Max.apply(a, b),
+                            Op::Sqrt => Unary::Sqrt.apply(a),
+                            Op::Sin => Unary::Sin.apply(a),
+                            Op::Cos => Unary::Cos.apply(a),
+                        };
+                    }
+                }
+                Item::ForEach { kind, args, out, outputs, body } => {
+                    let roots = kind.solve(&args.map(|i| x[at(i)]), self.slack);
+                    let before = accepted;
+                    for root in roots.as_slice() {
+                        if roots.free && accepted > before {
+                            break;
+                        }
+                        x[at(out[0])] = root[0];
+                        if *outputs > 1 {
+                            x[at(out[1])] = root[1];
+                        }
+                        accepted += self.block(body, x, offer);
+                    }
+                }
+                Item::IfZero { value, tolerance, then, otherwise } => {
+                    let zero = x[at(*value)].abs() < *tolerance;
+                    accepted += self.block(if zero { then } else { otherwise }, x, offer);
+                }
+                Item::Emit { from, to } => {
+                    let mut candidate = [[0.0; 2]; MAX_JOINTS];
+                    let pairs = &self.emitted[*from as usize..*to as usize];
+                    for (value, [a, b]) in candidate.iter_mut().zip(pairs) {
+                        *value = [x[at(*a)], x[at(*b)]];
+                    }
+                    accepted += usize::from(offer(&candidate[..pairs.len()]));
+                }
+            }
+        }
+        accepted
+    }
+}
+
+struct Translator<'p> {
+    program: &'p Program,
+    steps: Vec<Step>,
+    emitted: Vec<[u16; 2]>,
+    constants: Vec<u64>,
+    first_constant: usize,
+    first_name: usize,
+    first_temporary: usize,
+    high_water: usize,
+}
+
+/// Temporaries of one statement: expressions already computed, and the next free register.
+struct Temporaries {
+    known: Vec<(Expr, u16)>,
+    next: usize,
+}
+
+impl Translator<'_> {
+    fn block(&mut self, block: &Block) -> Vec<Item> {
+        let mut items = Vec::new();
+        for stmt in block {
+            let from = self.steps.len() as u32;
+            let mut t = Temporaries { known: Vec::new(), next: self.first_temporary };
+            let item = match stmt {
+                Stmt::Note(_) => None,
+                Stmt::Let { var, value } => {
+                    self.assign(*var, *value, &mut t);
+                    None
+                }
+                Stmt::ForEach { kind, args, out, body } => {
+                    let mut registers = [self.constant(0); 6];
+                    for (r, e) in registers.iter_mut().zip(args) {
+                        *r = self.value(*e, &mut t);
+                    }
+                    self.flush(from, &mut items);
+                    let names = out.iter().map(|v| self.name(*v)).collect::<Vec<_>>();
+                    let out = [names[0], *names.last().unwrap_or(&names[0])];
+                    let outputs = names.len() as u8;
+                    Some(Item::ForEach { kind: *kind, args: registers, out, outputs, body: self.block(body) })
+                }
+                Stmt::IfZero { value, tolerance, then, otherwise } => {
+                    let value = self.value(*value, &mut t);
+                    self.flush(from, &mut items);
+                    let (then, otherwise) = (self.block(then), self.block(otherwise));
+                    Some(Item::IfZero { value, tolerance: *tolerance, then, otherwise })
+                }
+                Stmt::Emit(values) => {
+                    let zero = self.constant(0);
+                    let pairs: Vec<[u16; 2]> = values
+                        .iter()
+                        .map(|v| match *v {
+                            Value::Angle(c, s) => [self.value(c, &mut t), self.value(s, &mut t)],
+                            Value::Length(x) => [self.value(x, &mut t), zero],
+                        })
+                        .collect();
+                    self.flush(from, &mut items);
+                    let from = self.emitted.len() as u32;
+                    self.emitted.extend(pairs);
+                    Some(Item::Emit { from, to: self.emitted.len() as u32 })
+                }
+            };
+            if item.is_none() {
+                self.flush(from, &mut items);
+            }
+            items.extend(item);
+        }
+        items
+    }
+
+    /// Makes the steps since `from` part of the item list, joined to a run that they continue.
+    fn flush(&self, from: u32, items: &mut Vec<Item>) {
+        let end = self.steps.len() as u32;
+        match items.last_mut() {
+            _ if from == end => {}
+            Some(Item::Steps { to, .. }) if *to == from => *to = end,
+            _ => items.push(Item::Steps { from, to: end }),
+        }
+    }
+
+    fn assign(&mut self, var: Var, value: Expr, t: &mut Temporaries) {
+        let to = self.name(var);
+        let start = self.steps.len();
+        let from = self.value(value, t);
+        // The last step can write the name itself.
+        let last = self.steps.len().wrapping_sub(1);
+        if self.steps.len() > start && self.steps[last].to == from {
+            self.steps[last].to = to;
+        } else {
+            self.steps.push(Step { op: Op::Copy, to, a: from, b: from });
+        }
+    }
+
+    fn value(&mut self, e: Expr, t: &mut Temporaries) -> u16 {
+        if let Some((_, register)) = t.known.iter().find(|(known, _)| *known == e) {
+            return *register;
+        }
+        let (op, a, b) = match self.program.exprs.node(e) {
+            Node::Const(bits) => return self.constant(bits),
+            Node::Rotation(i, j) => return u16::from(3 * i + j),
+            Node::Position(i) => return u16::from(9 + i),
+            Node::Free(k) => return POSE_REGISTERS as u16 + u16::from(k),
+            Node::Var(v) => return self.name(v),
+            Node::Unary(f, a) => {
+                let a = self.value(a, t);
+                let op = match f {
+                    Unary::Neg => Op::Neg,
+                    Unary::Sqrt => Op::Sqrt,
+                    Unary::Sin => Op::Sin,
+                    Unary::Cos => Op::Cos,
+                };
+                (op, a, a)
+            }
+            Node::Binary(f, a, b) => {
+                let (a, b) = (self.value(a, t), self.value(b, t));
+                let op = match f {
+                    Binary::Add => Op::Add,
+                    Binary::Sub => Op::Sub,
+                    Binary::Mul => Op::Mul,
+                    Binary::Div => Op::Div,
+                    Binary::Min => Op::Min,
+                    Binary::Max => Op::Max,
+                };
+                (op, a, b)
+            }
+        };
+        let to = t.next.min(usize::from(u16::MAX)) as u16;
+        t.next += 1;
+        self.high_water = self.high_water.max(t.next);
+        self.steps.push(Step { op, to, a, b });
+        t.known.push((e, to));
+        to
+    }
+
+    fn constant(&self, bits: u64) -> u16 {
+        let index = self.constants.binary_search(&bits).expect("all constants were collected");
+        (self.first_constant + index) as u16
+    }
+
+    fn name(&self, var: Var) -> u16 {
+        (self.first_name + var.0 as usize) as u16
+    }
+}

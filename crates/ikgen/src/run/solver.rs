@@ -1,0 +1,171 @@
+//! The solver that the rest of the project uses: a loaded program, the true chain, and the check between them.
+
+use robotc_core::Pose;
+use robotc_core::ik::{IkSolutions, InverseKinematics};
+use robotc_core::model::SerialChain;
+
+use super::{Bytecode, TooLarge, TrueChain, frame, interpreter};
+use crate::ir::{Program, TextError};
+use crate::kernel::chain::{self, EXACT, Frame, MAX_JOINTS, TOLERANCE};
+use crate::kernel::math::atan2;
+
+/// Solutions closer than this in every variable (radians modulo a turn, metres) are the same one.
+const SAME: f64 = 1e-7;
+
+/// What runs the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Engine {
+    /// The bytecode.
+    #[default]
+    Bytecode,
+    /// The reference interpreter: slow, for comparison.
+    Interpreter,
+}
+
+/// Why a program does not make a solver for a chain.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LoadError {
+    /// The text is not a program.
+    #[error("not a solution program: {0}")]
+    Text(#[from] TextError),
+    /// The program is too large for the bytecode.
+    #[error(transparent)]
+    Large(#[from] TooLarge),
+    /// The chain has another number of variables than the program.
+    #[error("the program is for {program} variables, the chain has {chain}")]
+    Variables {
+        /// Variables of the program.
+        program: usize,
+        /// Variables of the chain.
+        chain: usize,
+    },
+    /// The chain has too many joints.
+    #[error("the chain has {0} joints, at most {MAX_JOINTS} are supported")]
+    Joints(usize),
+}
+
+/// An inverse-kinematics solver for one chain.
+///
+/// The program was made for the ideal chain; the described (or calibrated) one is given at load, and every solution
+/// is checked against it, after a polish where the two differ.
+#[derive(Debug, Clone)]
+pub struct Solver {
+    program: Program,
+    code: Bytecode,
+    chain: TrueChain,
+    engine: Engine,
+    held: [bool; MAX_JOINTS],
+}
+
+impl Solver {
+    /// A solver from a program and the chain it is to run on.
+    pub fn new(program: Program, chain: &SerialChain) -> Result<Self, LoadError> {
+        let true_chain = TrueChain::new(chain).ok_or(LoadError::Joints(chain.joints.len()))?;
+        if true_chain.variables != program.variables {
+            let (program, chain) = (program.variables, true_chain.variables);
+            return Err(LoadError::Variables { program, chain });
+        }
+        let mut held = [false; MAX_JOINTS];
+        for v in &program.free {
+            held[*v] = true;
+        }
+        Ok(Self { code: Bytecode::new(&program)?, program, chain: true_chain, engine: Engine::Bytecode, held })
+    }
+
+    /// A solver from the text form of a program, as the knowledge base stores it.
+    pub fn from_text(text: &str, chain: &SerialChain) -> Result<Self, LoadError> {
+        Self::new(Program::from_text(text)?, chain)
+    }
+
+    /// The same solver run by another engine.
+    pub fn with_engine(mut self, engine: Engine) -> Self {
+        self.engine = engine;
+        self
+    }
+
+    /// The program.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// Number of instructions of the bytecode.
+    pub fn instructions(&self) -> usize {
+        self.code.instructions()
+    }
+
+    fn solve_frame(&self, base_from_tip: &Frame, free: &[f64], out: &mut IkSolutions) {
+        out.reset(self.program.variables);
+        let mut offer = |steps: &[[f64; 2]]| self.accept(base_from_tip, free, steps, out);
+        match self.engine {
+            Engine::Bytecode => self.code.run(base_from_tip, free, &mut offer),
+            Engine::Interpreter => interpreter::run(&self.program, base_from_tip, free, &mut offer),
+        };
+    }
+
+    /// Checks a candidate, polishes it where it must be, and keeps it if it is right and new.
+    fn accept(&self, base_from_tip: &Frame, free: &[f64], steps: &[[f64; 2]], out: &mut IkSolutions) -> bool {
+        let n = self.program.variables;
+        let distance = self.chain.forward_steps(steps).distance(base_from_tip);
+        if !distance.is_finite() {
+            return false;
+        }
+        let mut values = [0.0; MAX_JOINTS];
+        for i in 0..n {
+            values[i] = if self.chain.slides[i] { steps[i][0] } else { atan2(steps[i][1], steps[i][0]) };
+        }
+        for (variable, value) in self.program.free.iter().zip(free) {
+            values[*variable] = *value;
+        }
+        let values = &mut values[..n];
+        if distance > EXACT {
+            let (links, tip) = (&self.chain.links, &self.chain.last_from_tip);
+            let left = chain::polish(links, tip, base_from_tip, values, &self.held[..n]);
+            if !(left < TOLERANCE) {
+                return false;
+            }
+            for i in 0..n {
+                if !self.chain.slides[i] && !self.held[i] {
+                    values[i] = principal(values[i]);
+                }
+            }
+        }
+        let known = out.iter().any(|other| {
+            (0..n).all(|i| {
+                let d = (values[i] - other[i]).abs();
+                d < SAME || (!self.chain.slides[i] && (d - std::f64::consts::TAU).abs() < SAME)
+            })
+        });
+        if !known {
+            out.push(values);
+        }
+        true
+    }
+}
+
+/// The same angle in (-pi, pi].
+fn principal(angle: f64) -> f64 {
+    use std::f64::consts::{PI, TAU};
+    let turned = angle - TAU * ((angle + PI) / TAU).floor();
+    if turned <= -PI { turned + TAU } else { turned }
+}
+
+impl InverseKinematics for Solver {
+    fn variables(&self) -> usize {
+        self.program.variables
+    }
+
+    fn free_variables(&self) -> &[usize] {
+        &self.program.free
+    }
+
+    fn solve(&self, base_from_tip: &Pose, free: &[f64], out: &mut IkSolutions) {
+        assert_eq!(free.len(), self.program.free.len(), "one value for each free variable");
+        let frame = frame(base_from_tip);
+        let numbers = frame.position.iter().chain(frame.rotation.iter().flatten()).chain(free);
+        if numbers.clone().all(|x| x.is_finite()) {
+            self.solve_frame(&frame, free, out);
+        } else {
+            out.reset(self.program.variables);
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The chain whose pose a solution must reach: constants given at load, not part of the program.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use robotc_core::Pose;
+use robotc_core::model::{ChainMotion, SerialChain};
+
+use super::frame;
+use crate::kernel::chain::{self, Frame, Link, MAX_JOINTS};
+
+/// A serial chain in the form of the kernel: every axis is the z axis of its joint frame, offsets are folded in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrueChain {
+    pub(crate) links: Vec<Link>,
+    pub(crate) last_from_tip: Frame,
+    pub(crate) variables: usize,
+    /// Whether each variable is a length.
+    pub(crate) slides: Vec<bool>,
+    /// Whether each joint has a variable of its own: then steps need no new sines.
+    direct: bool,
+}
+
+impl TrueChain {
+    /// The kernel's form of a chain; `None` when it has more than [`MAX_JOINTS`] joints.
+    pub fn new(chain: &SerialChain) -> Option<Self> {
+        if chain.joints.len() > MAX_JOINTS || chain.joints.is_empty() {
+            return None;
+        }
+        let mut links = Vec::new();
+        let mut slides = vec![false; chain.variables.len()];
+        // From the z-aligned frame after the previous joint to the described one.
+        let mut aligned_from_described = Pose::identity();
+        let mut direct = true;
+        for joint in &chain.joints {
+            let flip = if joint.multiplier == -1.0 { -1.0 } else { 1.0 };
+            let axis = joint.axis.into_inner() * flip;
+            let described_from_aligned = Pose::from_parts(nalgebra::Translation3::identity(), turn_z_to(&axis));
+            let slides_here = joint.motion == ChainMotion::Prismatic;
+            links.push(Link {
+                previous_from_joint: frame(
+                    &(aligned_from_described * joint.previous_from_joint * described_from_aligned),
+                ),
+                slides: slides_here,
+                variable: joint.variable,
+                ratio: joint.multiplier * flip,
+            });
+            slides[joint.variable] = slides_here;
+            direct &= joint.multiplier * flip == 1.0;
+            let z = Vector3::z_axis();
+            let offset = joint.offset * flip;
+            let after = match joint.motion {
+                ChainMotion::Revolute => Pose::from_parts(
+                    nalgebra::Translation3::identity(),
+                    UnitQuaternion::from_axis_angle(&z, offset),
+                ),
+                ChainMotion::Prismatic => Pose::translation(0.0, 0.0, offset),
+            };
+            aligned_from_described = after * described_from_aligned.inverse();
+        }
+        let last_from_tip = frame(&(aligned_from_described * chain.last_from_tip));
+        Some(Self { links, last_from_tip, variables: chain.variables.len(), slides, direct })
+    }
+
+    /// `base_from_tip` for the `[cos, sin]` or `[length, _]` of each variable.
+    pub(crate) fn forward_steps(&self, steps: &[[f64; 2]]) -> Frame {
+        let mut moves = [[0.0; 2]; MAX_JOINTS];
+        for (link, step) in self.links.iter().zip(&mut moves) {
+            *step = steps[link.variable];
+            if !self.direct && link.ratio != 1.0 {
+                let [x, y] = *step;
+                *step = if link.slides {
+                    [link.ratio * x, 0.0]
+                } else {
+                    crate::kernel::math::cos_sin(link.ratio * crate::kernel::math::atan2(y, x))
+                };
+            }
+        }
+        chain::forward(&self.links, &self.last_from_tip, &moves[..self.links.len()])
+    }
+
+    /// `base_from_tip` at these variable values.
+    pub(crate) fn forward(&self, values: &[f64]) -> Frame {
+        let mut moves = [[0.0; 2]; MAX_JOINTS];
+        for (link, step) in self.links.iter().zip(&mut moves) {
+            let value = link.ratio * values[link.variable];
+            *step = if link.slides { [value, 0.0] } else { crate::kernel::math::cos_sin(value) };
+        }
+        chain::forward(&self.links, &self.last_from_tip, &moves[..self.links.len()])
+    }
+}
+
+/// A rotation that takes the z axis to `axis`.
+fn turn_z_to(axis: &Vector3<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::rotation_between(&Vector3::z(), axis)
+        .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use robotc_core::Seed;
+    use robotc_core::model::{ChainJoint, ChainVariable};
+
+    #[test]
+    fn agrees_with_the_chain_as_described() {
+        let mut rng = Seed::new(11).rng();
+        let variables = (0..5)
+            .map(|i| ChainVariable {
+                name: format!("j{i}"),
+                dof: robotc_core::DofIdx::new(i),
+                lower: -3.0,
+                upper: 3.0,
+            })
+            .collect();
+        let multipliers = [1.0, -1.0, 1.0, 0.5, 1.0, 1.0];
+        let joints = (0..6)
+            .map(|i| ChainJoint {
+                name: format!("j{i}"),
+                motion: if i == 2 { ChainMotion::Prismatic } else { ChainMotion::Revolute },
+                previous_from_joint: Pose::from_parts(
+                    nalgebra::Translation3::from(rng.direction().into_inner()),
+                    rng.rotation(),
+                ),
+                axis: if i == 4 { -Vector3::z_axis() } else { rng.direction() },
+                variable: [0, 1, 2, 3, 4, 0][i],
+                multiplier: multipliers[i],
+                offset: 0.1 * i as f64,
+            })
+            .collect();
+        let last_from_tip = Pose::from_parts(nalgebra::Translation3::new(0.1, 0.2, 0.3), rng.rotation());
+        let chain = SerialChain { name: "test".into(), joints, variables, last_from_tip };
+        let kernel = TrueChain::new(&chain).unwrap();
+        for _ in 0..50 {
+            let values: Vec<f64> = (0..5).map(|_| rng.range(-3.0, 3.0)).collect();
+            let expected = frame(&chain.forward(&values));
+            assert!(kernel.forward(&values).distance(&expected) < 1e-14);
+            let steps: Vec<[f64; 2]> = values
+                .iter()
+                .zip(&kernel.slides)
+                .map(|(v, slides)| if *slides { [*v, 0.0] } else { crate::kernel::math::cos_sin(*v) })
+                .collect();
+            assert!(kernel.forward_steps(&steps).distance(&expected) < 1e-14);
+        }
+    }
+}
