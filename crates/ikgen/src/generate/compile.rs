@@ -220,7 +220,14 @@ fn letters(chain: &SerialChain) -> String {
     if all.contains('P') { all } else { format!("{}R", all.len()) }
 }
 
-fn describe(letters: &str, name: &str, reversed: bool, how: &str, free: &[usize], chain: &SerialChain) -> String {
+fn describe(
+    letters: &str,
+    name: &str,
+    reversed: bool,
+    how: &str,
+    free: &[usize],
+    chain: &SerialChain,
+) -> String {
     let name = match (name, reversed) {
         ("spherical wrist", true) => "spherical shoulder",
         ("three parallel axes", false) => "three parallel axes 2-3-4",
@@ -241,7 +248,9 @@ fn describe(letters: &str, name: &str, reversed: bool, how: &str, free: &[usize]
 fn refusal(chain: &SerialChain, letters: &str, choices: &[Vec<usize>]) -> String {
     let n = chain.variables.len();
     match n {
-        _ if choices.is_empty() => format!("{letters}: name the free joints, {} of them", n.saturating_sub(6)),
+        _ if choices.is_empty() => {
+            format!("{letters}: name the free joints, {} of them", n.saturating_sub(6))
+        }
         6 => format!(
             "{letters} without a triple: no three consecutive axes at an end meet, and axes 2-3-4 or 3-4-5 are not parallel"
         ),

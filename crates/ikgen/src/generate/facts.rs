@@ -129,9 +129,9 @@ fn ideal_axes(described: &[Axis], tolerance: f64) -> Vec<Axis> {
 fn simple_direction(d: &Vector3<f64>, tolerance: f64) -> Option<Vector3<f64>> {
     let simple = [0.0, 0.5, std::f64::consts::FRAC_1_SQRT_2, 0.75_f64.sqrt(), 1.0];
     let snapped = d.map(|x| {
-        let nearest = simple.into_iter().fold(9.0, |best: f64, s| {
-            if (x.abs() - s).abs() < (x.abs() - best).abs() { s } else { best }
-        });
+        let nearest = simple
+            .into_iter()
+            .fold(9.0, |best: f64, s| if (x.abs() - s).abs() < (x.abs() - best).abs() { s } else { best });
         nearest.copysign(x) + 0.0
     });
     let fits = (snapped - d).norm() < tolerance && (snapped.norm() - 1.0).abs() < 1e-12;

@@ -13,7 +13,8 @@ pub(super) fn choices(chain: &SerialChain) -> Vec<Vec<usize>> {
             let score: Vec<f64> = (0..7).map(|v| freedom_without(chain, v)).collect();
             let best = score.iter().fold(0.0, |a: f64, b| a.max(*b));
             // A joint whose loss costs most of the freedom (an elbow) is a poor one to give, though not a forbidden one.
-            let (mut good, poor): (Vec<usize>, Vec<usize>) = (0..7).rev().partition(|v| score[*v] > 0.2 * best);
+            let (mut good, poor): (Vec<usize>, Vec<usize>) =
+                (0..7).rev().partition(|v| score[*v] > 0.2 * best);
             good.extend(poor.into_iter().filter(|v| score[*v] > 1e-6 * best));
             good.into_iter().map(|v| vec![v]).collect()
         }

@@ -69,7 +69,8 @@ impl Problem {
         let sign = if self.reversed { -1.0 } else { 1.0 };
         let mut ideal = self.facts.ideal.clone();
         for axis in self.axes.iter().chain(self.given.as_ref().map(|(_, a)| a)) {
-            let same = ideal.iter_mut().find(|a| a.variable == axis.variable).expect("axes come from the facts");
+            let same =
+                ideal.iter_mut().find(|a| a.variable == axis.variable).expect("axes come from the facts");
             *same = Axis { direction: axis.direction * sign, ..*axis };
         }
         super::facts::snap_between(&self.facts.described, &ideal)
@@ -129,7 +130,8 @@ impl Problem {
         for axis in self.outer.0.iter().chain(&self.outer.1).chain(given) {
             all[axis.variable] = Some(self.move_of(b, axis));
         }
-        let all: Vec<Move<'_>> = all.into_iter().map(|m| m.expect("every variable is unknown or given")).collect();
+        let all: Vec<Move<'_>> =
+            all.into_iter().map(|m| m.expect("every variable is unknown or given")).collect();
         b.emit(&all);
     }
 

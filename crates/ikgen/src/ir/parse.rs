@@ -106,7 +106,9 @@ fn tokens(text: &str) -> Result<Vec<(usize, Token)>, TextError> {
                 while length < bytes.len()
                     && (bytes[length].is_ascii_alphanumeric()
                         || bytes[length] == b'.'
-                        || (length > 0 && b"+-".contains(&bytes[length]) && b"eE".contains(&bytes[length - 1])))
+                        || (length > 0
+                            && b"+-".contains(&bytes[length])
+                            && b"eE".contains(&bytes[length - 1])))
                 {
                     length += 1;
                 }
@@ -117,9 +119,8 @@ fn tokens(text: &str) -> Result<Vec<(usize, Token)>, TextError> {
                 (length, Token::Number(value))
             }
             c if c.is_ascii_alphabetic() || c == '_' => {
-                let length = rest
-                    .find(|c: char| !c.is_ascii_alphanumeric() && c != '_')
-                    .unwrap_or(rest.len());
+                let length =
+                    rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
                 (length, Token::Word(rest[..length].to_owned()))
             }
             c if "{}()[],=+-*/".contains(c) => (1, Token::Sign(c)),

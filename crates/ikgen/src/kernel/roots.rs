@@ -289,7 +289,8 @@ mod tests {
             ];
             let roots = conic(q, 1e-9);
             for angle in angles {
-                let gap = angles.iter().filter(|a| **a != angle).map(|a| (a - angle).abs()).fold(9.0, f64::min);
+                let gap =
+                    angles.iter().filter(|a| **a != angle).map(|a| (a - angle).abs()).fold(9.0, f64::min);
                 let near = roots
                     .as_slice()
                     .iter()

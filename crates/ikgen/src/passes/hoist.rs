@@ -9,7 +9,8 @@ use crate::ir::{Block, Expr, Exprs, Node, Program, Stmt, Var, exprs_of, map_stmt
 /// Moves names and parts of expressions out of the loops they do not depend on.
 pub fn hoist(program: &Program) -> Program {
     let out = with_body(program, program.exprs.clone(), program.names.clone(), Vec::new());
-    let mut h = Hoist { out, from: &program.exprs, levels: vec![Level::default()], home: HashMap::new(), number: 0 };
+    let mut h =
+        Hoist { out, from: &program.exprs, levels: vec![Level::default()], home: HashMap::new(), number: 0 };
     h.out.body = h.block(&program.body);
     h.out
 }

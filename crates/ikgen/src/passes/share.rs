@@ -8,8 +8,7 @@ use crate::ir::{Block, Expr, Exprs, Node, Program, Stmt, blocks_of, exprs_of, ma
 /// Names every operation that occurs in more than one place.
 pub fn share(program: &Program) -> Program {
     let shared = shared_nodes(program);
-    let mut out =
-        with_body(program, program.exprs.clone(), program.names.clone(), Vec::new());
+    let mut out = with_body(program, program.exprs.clone(), program.names.clone(), Vec::new());
     let mut number = 0;
     let body = place(program, &mut out, &program.body, &shared, &mut number, &HashMap::new());
     out.body = body;
@@ -84,8 +83,10 @@ fn place(
             [] => {}
             [only] => {
                 let direct = uses(program, &block[only], wanted, true).contains(e);
-                let nested: Vec<_> =
-                    blocks_of(&block[only]).into_iter().filter(|b| block_uses(program, b, *e, wanted)).collect();
+                let nested: Vec<_> = blocks_of(&block[only])
+                    .into_iter()
+                    .filter(|b| block_uses(program, b, *e, wanted))
+                    .collect();
                 if !direct && nested.len() == 1 {
                     inner[only].insert(*e);
                 } else {

@@ -12,7 +12,8 @@ pub fn run(
     free: &[f64],
     offer: &mut dyn FnMut(&[[f64; 2]]) -> bool,
 ) -> usize {
-    let mut run = Run { program, base_from_tip, free, vars: vec![0.0; program.names.len()], offer, accepted: 0 };
+    let mut run =
+        Run { program, base_from_tip, free, vars: vec![0.0; program.names.len()], offer, accepted: 0 };
     run.block(&program.body);
     run.accepted
 }

@@ -69,7 +69,13 @@ impl Solver {
         for v in &program.free {
             held[*v] = true;
         }
-        Ok(Self { code: Bytecode::new(&program)?, program, chain: true_chain, engine: Engine::Bytecode, held })
+        Ok(Self {
+            code: Bytecode::new(&program)?,
+            program,
+            chain: true_chain,
+            engine: Engine::Bytecode,
+            held,
+        })
     }
 
     /// A solver from the text form of a program, as the knowledge base stores it.

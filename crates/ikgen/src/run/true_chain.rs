@@ -33,7 +33,8 @@ impl TrueChain {
         for joint in &chain.joints {
             let flip = if joint.multiplier == -1.0 { -1.0 } else { 1.0 };
             let axis = joint.axis.into_inner() * flip;
-            let described_from_aligned = Pose::from_parts(nalgebra::Translation3::identity(), turn_z_to(&axis));
+            let described_from_aligned =
+                Pose::from_parts(nalgebra::Translation3::identity(), turn_z_to(&axis));
             let slides_here = joint.motion == ChainMotion::Prismatic;
             links.push(Link {
                 previous_from_joint: frame(

@@ -106,7 +106,8 @@ impl<'b> Form<'b> {
     /// Adds the coefficients of `sign * self^2` to those of a conic.
     fn add_square(&self, sign: f64, q: &mut [Scalar<'b>; 6]) {
         let Form { still, cos, sin } = *self;
-        let terms = [cos * cos, cos * sin * 2.0, sin * sin, cos * still * 2.0, sin * still * 2.0, still * still];
+        let terms =
+            [cos * cos, cos * sin * 2.0, sin * sin, cos * still * 2.0, sin * still * 2.0, still * still];
         for (sum, term) in q.iter_mut().zip(terms) {
             *sum = *sum + term * sign;
         }
@@ -138,7 +139,8 @@ pub(super) fn reach<'b>(
     let half = b.constant(0.5);
     // Two equations, u_k . R2 v = right_k, less the part of v along axis 2, which the turn leaves alone.
     let zero = b.constant(0.0);
-    let square_right = Form { still: (goal.square() - p12.square()) * half, cos: zero, sin: zero }.plus(square, -half);
+    let square_right =
+        Form { still: (goal.square() - p12.square()) * half, cos: zero, sin: zero }.plus(square, -half);
     let axis_right = Form { still: h1.dot(goal) - h1.dot(p12), cos: zero, sin: zero };
     let (q3, q2, w);
     match pair {
@@ -163,10 +165,7 @@ pub(super) fn reach<'b>(
             let e1 = (e1 - second * second.dot(&e1)).normalize().map(crate::generate::facts::tidy);
             let (e1, e2) = (b.vector(&e1), b.vector(&second.cross(&e1)));
             let height = v.dot(h2);
-            let rights = [
-                square_right.plus(height, -p12.dot(h2)),
-                axis_right.plus(height, -h1.dot(h2)),
-            ];
+            let rights = [square_right.plus(height, -p12.dot(h2)), axis_right.plus(height, -h1.dot(h2))];
             let [a, c] = [p12.dot(e1), p12.dot(e2)];
             let [d, f] = [h1.dot(e1), h1.dot(e2)];
             // Cramer, undivided: det * (x, y) = R2 v in the plane across axis 2.
@@ -186,11 +185,8 @@ pub(super) fn reach<'b>(
         }
     }
     let reached = p12 + w.turned(h2, q2);
-    let q1 = b.align(
-        names[0],
-        reached.dot(goal) - h1.dot(reached) * h1.dot(goal),
-        h1.dot(reached.cross(goal)),
-    );
+    let q1 =
+        b.align(names[0], reached.dot(goal) - h1.dot(reached) * h1.dot(goal), h1.dot(reached.cross(goal)));
     [q1, q2, q3]
 }
 

@@ -3,7 +3,7 @@
 //! The first three bring the wrist centre to its place, the last three the rotation about. Turned round, the same
 //! serves chains whose first three axes meet.
 
-use crate::generate::builder::{Builder, Move, Vector};
+use crate::generate::builder::{Builder, Move};
 use crate::generate::facts::{Axis, foot, meeting_point, parallel};
 use crate::generate::problem::Problem;
 use crate::generate::strategies::orient::orient;
@@ -15,8 +15,11 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
         return Err("a joint slides".into());
     }
     let tolerance = problem.tolerance();
-    let centre = meeting_point(&problem.axes[3..], tolerance).ok_or("axes 4, 5 and 6 do not meet in a point")?;
-    if parallel(&problem.axes[3], &problem.axes[4], 0.02) || parallel(&problem.axes[4], &problem.axes[5], 0.02) {
+    let centre =
+        meeting_point(&problem.axes[3..], tolerance).ok_or("axes 4, 5 and 6 do not meet in a point")?;
+    if parallel(&problem.axes[3], &problem.axes[4], 0.02)
+        || parallel(&problem.axes[4], &problem.axes[5], 0.02)
+    {
         return Err("two axes of the wrist are parallel".into());
     }
     if let Some((before, _)) = problem.given {

@@ -88,7 +88,11 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
 }
 
 /// `G^T v`.
-fn b_transposed<'b>(b: &'b Builder, goal: &Motion<'b>, v: Vector<'b>) -> [crate::generate::builder::Scalar<'b>; 3] {
+fn b_transposed<'b>(
+    b: &'b Builder,
+    goal: &Motion<'b>,
+    v: Vector<'b>,
+) -> [crate::generate::builder::Scalar<'b>; 3] {
     let basis = [nalgebra::Vector3::x(), nalgebra::Vector3::y(), nalgebra::Vector3::z()];
     basis.map(|e| goal.rotate(b.vector(&e)).dot(v))
 }
@@ -167,12 +171,8 @@ impl<'b> Rest<'b, '_> {
         let (p23, p34) = (self.point(2) - self.point(1), self.point(3) - self.point(2));
         let h3 = self.direction(2);
         let constant = p23.square() + p34.square();
-        let q3 = b.circle(
-            &self.names[2],
-            p23.dot(p34) * 2.0,
-            p23.dot(h3.cross(p34)) * 2.0,
-            u.square() - constant,
-        );
+        let q3 =
+            b.circle(&self.names[2], p23.dot(p34) * 2.0, p23.dot(h3.cross(p34)) * 2.0, u.square() - constant);
         let arm = p23 + p34.turned(h3, q3);
         let q2 = b.align(&self.names[1], arm.dot(u), self.direction(1).dot(arm.cross(u)));
         // R2 R3 R4 = R1^T G R6^T R5^T, seen on a vector across the parallel axes.
