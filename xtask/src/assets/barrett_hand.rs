@@ -64,7 +64,8 @@ fn fork(radius: f64, inside: f64, outside: f64) -> TriMesh {
 fn inner() -> Part {
     let forks = fork(0.0115, 0.0066, 0.0108);
     let beam = Loft {
-        around: 20,
+        around: 16,
+        steps: 2,
         ..Loft::new(
             [
                 // Along x: the first half width is along -z of the link, the second along y.
@@ -86,7 +87,8 @@ fn inner() -> Part {
 fn outer() -> Part {
     let forks = fork(0.0092, 0.0058, 0.0103);
     let beam = Loft {
-        around: 20,
+        around: 16,
+        steps: 2,
         ..Loft::new(
             [
                 Section::oval(0.0080, [0.0, 0.0000], [0.0102, 0.0075], 4.0),

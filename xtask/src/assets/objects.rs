@@ -30,9 +30,9 @@ fn mug() -> TriMesh {
             [0.032, 0.006, 0.005],
             [0.0, 0.006, 0.0],
         ],
-        40,
+        36,
     );
-    let steps = 14;
+    let steps = 12;
     let path: Vec<[f64; 2]> = (0..=steps)
         .map(|i| {
             let angle = PI * (0.5 - f64::from(i) / f64::from(steps));
@@ -40,7 +40,7 @@ fn mug() -> TriMesh {
             [0.0335 + 0.031 * reach(libm::cos(angle)).max(0.0), 0.052 + 0.030 * reach(libm::sin(angle))]
         })
         .collect();
-    join([body, tube(&path, [0.0065, 0.0040], 12)])
+    join([body, tube(&path, [0.0065, 0.0040], 10)])
 }
 
 /// An angle bracket with a rib in its corner, 60 x 40 x 50 mm.

@@ -10,6 +10,9 @@ use super::{Ring, circle, skin};
 /// A corner of a profile: radius, height, and the radius it is rounded with.
 pub(crate) type Corner = [f64; 3];
 
+/// Roundings up to this radius, metres, become a bevel.
+const SMALL: f64 = 0.0045;
+
 /// Turns a profile about z. Corners run from the bottom to the top along the outside (and on along the inside, for
 /// a hollow body); a corner of radius zero lies on the axis.
 pub(crate) fn lathe(profile: &[Corner], around: usize) -> TriMesh {
@@ -41,7 +44,7 @@ fn rounded(profile: &[Corner]) -> Vec<Vector2<f64>> {
         let from = at + before * (corner[2] / libm::tan(half_angle));
         let centre = at + (before + after).normalize() * (corner[2] / libm::sin(half_angle));
         let turn = 2.0 * (FRAC_PI_2 - half_angle) * (before.perp(&after)).signum() * -1.0;
-        let steps = 3;
+        let steps = if corner[2] > SMALL { 3 } else { 1 };
         for step in 0..=steps {
             let angle = turn * f64::from(step) / f64::from(steps);
             let (s, c) = (libm::sin(angle), libm::cos(angle));

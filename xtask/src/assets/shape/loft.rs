@@ -133,9 +133,9 @@ impl Loft {
 pub(crate) fn rounded_box(size: [f64; 3], corner: f64, edge: f64) -> TriMesh {
     let [a, b, c] = size.map(|s| s / 2.0);
     let mut rings = Vec::new();
-    for (sign, steps) in [(-1.0, [0, 1, 2, 3]), (1.0, [3, 2, 1, 0])] {
+    for (sign, steps) in [(-1.0, [0, 1, 2]), (1.0, [2, 1, 0])] {
         for step in steps {
-            let angle = FRAC_PI_2 * f64::from(step) / 3.0;
+            let angle = FRAC_PI_2 * f64::from(step) / 2.0;
             let (inset, drop) = (edge * (1.0 - libm::sin(angle)), edge * (1.0 - libm::cos(angle)));
             rings.push(rounded_rectangle([a - inset, b - inset], corner - inset, sign * (c - drop)));
         }
@@ -144,7 +144,7 @@ pub(crate) fn rounded_box(size: [f64; 3], corner: f64, edge: f64) -> TriMesh {
 }
 
 fn rounded_rectangle(half: [f64; 2], radius: f64, z: f64) -> Ring {
-    let steps = 4;
+    let steps = 3;
     let mut ring = Ring::new();
     for (quarter, [x, y]) in [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].into_iter().enumerate() {
         for step in 0..=steps {
