@@ -43,9 +43,10 @@ impl Bounds {
     }
 }
 
-pub(super) fn of_recording(recording: &Recording, groups: &[Group]) -> Option<Bounds> {
+/// Extents of the nodes of a set of groups, each over the whole timeline.
+pub(super) fn of_nodes(recording: &Recording, groups: &[Group]) -> Vec<Bounds> {
     let shown = recording.nodes().enumerate().filter(|(_, node)| groups.contains(&node.group));
-    shown.filter_map(|(index, _)| of_node(recording, index)).reduce(|a, b| a.join(&b))
+    shown.filter_map(|(index, _)| of_node(recording, index)).collect()
 }
 
 /// Extent of a node's surfaces over the whole timeline, sampled where the node or an ancestor has a pose.

@@ -167,6 +167,11 @@ impl Recording {
 
     /// Extent of everything solid in a set of groups over the whole timeline; `None` when there is nothing.
     pub fn bounds(&self, groups: &[Group]) -> Option<Bounds> {
-        bounds::of_recording(self, groups)
+        self.node_bounds(groups).into_iter().reduce(|a, b| a.join(&b))
+    }
+
+    /// Extent of each solid node of a set of groups over the whole timeline, in node order.
+    pub fn node_bounds(&self, groups: &[Group]) -> Vec<Bounds> {
+        bounds::of_nodes(self, groups)
     }
 }

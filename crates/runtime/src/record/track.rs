@@ -4,6 +4,8 @@ use robotc_core::Pose;
 
 /// Pose changes below this do not show: metres, or radians.
 const STILL: f64 = 1e-6;
+/// Times closer than this are one, seconds.
+const ROUNDING: f64 = 1e-9;
 
 /// A pose at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,16 +46,18 @@ impl Track {
 
     /// Adds a sample; a second one of the same time replaces the first. Runs of equal poses keep their two ends only.
     ///
-    /// Panics when `time` is before the last sample or not finite: a recording goes forward.
+    /// Panics when `time` is before the last sample (by more than sums of steps differ by rounding) or not finite: a
+    /// recording goes forward.
     pub fn push(&mut self, time: f64, mut pose: Pose) {
-        assert!(time.is_finite() && time >= self.end(), "samples of a track go forward in time");
+        assert!(time.is_finite() && time >= self.end() - ROUNDING, "samples of a track go forward in time");
+        let time = time.max(self.end());
         if let Some(last) = self.samples.last()
             && last.pose.rotation.coords.dot(&pose.rotation.coords) < 0.0
         {
             // The same rotation, written so that components can be interpolated one by one.
             pose.rotation = nalgebra::Unit::new_unchecked(-pose.rotation.into_inner());
         }
-        if self.samples.last().is_some_and(|last| last.time == time) {
+        if self.samples.last().is_some_and(|last| time - last.time < ROUNDING) {
             self.samples.pop();
         }
         if let [.., a, b] = self.samples[..]
