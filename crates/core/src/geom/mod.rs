@@ -14,6 +14,7 @@ mod parts;
 mod penetration;
 mod primitive;
 mod query;
+mod surface;
 
 pub use aabb::Aabb;
 pub use hull::HullError;
@@ -22,3 +23,4 @@ pub use part::{ConvexPart, PartError, Plane};
 pub use parts::ConvexParts;
 pub use primitive::{box_part, capsule_part, cylinder_part, sphere_part};
 pub use query::{Contact, Distance, contact, distance, intersects, within};
+pub use surface::surface;
