@@ -35,7 +35,8 @@ pub const CODES: &[CodeInfo] = &[
     entry(
         "R0002",
         "file cannot be read",
-        "The file exists but the operating system would not read it, or it is not UTF-8 text where text is needed.",
+        "The file exists but the operating system would not read it, or it is not UTF-8 text where text is \
+         needed.",
     ),
     entry(
         "R0101",
@@ -52,7 +53,8 @@ pub const CODES: &[CodeInfo] = &[
     entry(
         "R0103",
         "missing key",
-        "A table lacks a key that has no default. The place shown is the table; write the key below its header.",
+        "A table lacks a key that has no default. The place shown is the table; write the key below its \
+         header.",
     ),
     entry(
         "R0104",
@@ -79,7 +81,8 @@ pub const CODES: &[CodeInfo] = &[
     entry(
         "R0108",
         "unknown word",
-        "The key takes one of a few words, and this is none of them. The words allowed are listed with the finding.",
+        "The key takes one of a few words, and this is none of them. The words allowed are listed with the \
+         finding.",
     ),
     entry(
         "R0109",
@@ -108,7 +111,8 @@ pub const CODES: &[CodeInfo] = &[
     entry(
         "R0114",
         "unknown parameter",
-        "The artefact kind has no parameter of this name. `robotc schema robot` prints all parameters of all kinds.",
+        "The artefact kind has no parameter of this name. `robotc schema robot` prints all parameters of \
+         all kinds.",
     ),
     entry(
         "R0201",
@@ -351,6 +355,138 @@ pub const CODES: &[CodeInfo] = &[
         "another mesh file used",
         "The mesh file named by the description does not exist, but one of the same name with another ending, \
          or at the end of another path, does. It is used.",
+    ),
+    entry(
+        "R0401",
+        "unknown link",
+        "The specification names a link that the robot description does not have. Links are named as in the \
+         URDF, upper and lower case included.",
+    ),
+    entry(
+        "R0402",
+        "unknown joint",
+        "The specification names a joint that the robot description does not have. Joints are named as in \
+         the URDF, upper and lower case included.",
+    ),
+    entry(
+        "R0403",
+        "joint without a value of its own",
+        "The joint is fixed, or it mimics another joint, so it cannot be set, weighted or limited by \
+         itself. Name the joint that it follows, which moves both.",
+    ),
+    entry(
+        "R0404",
+        "no chain between base and tip",
+        "An arm is the chain of joints from its base link down to its tip link. The tip must be below the \
+         base in the tree of links, at least one joint between them must move, and none of them may mimic a \
+         joint outside of the chain.",
+    ),
+    entry(
+        "R0405",
+        "unknown gripper",
+        "The arm names a gripper for which the specification has no `[[gripper]]` table.",
+    ),
+    entry(
+        "R0406",
+        "gripper not fixed to the arm",
+        "The palm of an arm's gripper must be joined to the arm's tip by fixed joints only, and the \
+         gripper's joints must not be part of the arm: otherwise a pose of the tool does not say where the \
+         tip is. Choose the tip just above the palm.",
+    ),
+    entry(
+        "R0407",
+        "free joint outside of the chain",
+        "The joints of `free` are those of the arm's own chain that are chosen instead of solved for.",
+    ),
+    entry(
+        "R0408",
+        "one value for each joint",
+        "The list must have one value for each joint it speaks of: for `home` the moving joints from base \
+         to tip, for `closing` and `values` the gripper's `joints`.",
+    ),
+    entry(
+        "R0409",
+        "value outside of joint limits",
+        "The joint cannot take this value: it is outside of the limits that apply. Limits come from \
+         `[limits]`, `joint_limits` and the description, in this order. Angles are radians.",
+    ),
+    entry(
+        "R0410",
+        "not part of the gripper",
+        "Fingers and their joints must hang below the palm, directly or through other links; else they do \
+         not move with it.",
+    ),
+    entry(
+        "R0411",
+        "link paired with itself",
+        "A pair of links to ignore consists of two different links. A link is never tested against itself.",
+    ),
+    entry(
+        "R0412",
+        "limits assumed",
+        "No file says how fast these joints may move, so cautious values are assumed. Plans are correct but \
+         slower than the robot allows, or faster than it likes: write the limits of the maker's data sheet \
+         into `[limits]`, or name MoveIt's `joint_limits.yaml`.",
+    ),
+    entry(
+        "R0413",
+        "limits out of order",
+        "A lower limit must not be above the upper one, and a joint that turns without end needs both or none.",
+    ),
+    entry(
+        "R0414",
+        "footprint without area",
+        "The corners of the footprint must go round the outline of the base, in metres, and enclose an area.",
+    ),
+    entry(
+        "R0415",
+        "robot without arm",
+        "A robot needs at least one arm: an `[[arm]]` table, or an SRDF with a group that is a chain. \
+         `robotc init` writes a specification with guessed arms.",
+    ),
+    entry(
+        "R0416",
+        "gripper that cannot close",
+        "Every entry of `closing` is 0, so no joint would close the gripper. Write 1 for a joint that \
+         closes by growing, -1 for one that closes by shrinking.",
+    ),
+    entry(
+        "R0418",
+        "direction without length",
+        "A direction needs a length above zero; its length is otherwise without meaning.",
+    ),
+    entry("R0501", "unknown arm", "The task names an arm that its robot specification does not define."),
+    entry(
+        "R0502",
+        "arm not chosen",
+        "The robot has several arms, so the task must say with `arm` which one does it.",
+    ),
+    entry(
+        "R0503",
+        "arm without a gripper",
+        "Goals move objects, and the arm of the task carries no gripper. Give the arm a `gripper` in the \
+         robot specification, or choose another arm.",
+    ),
+    entry(
+        "R0504",
+        "unknown object",
+        "A goal names something that is not an `[[object]]` of the task. Obstacles stay where they are.",
+    ),
+    entry(
+        "R0505",
+        "mesh cannot be used",
+        "The mesh of an object or obstacle is not a readable STL, OBJ or COLLADA file, or holds no triangles.",
+    ),
+    entry(
+        "R0506",
+        "damaged mesh",
+        "A considerable part of the mesh had to be dropped: triangles without area, or corners that do not \
+         exist. Check it in the program that wrote it.",
+    ),
+    entry(
+        "R0507",
+        "unusual size",
+        "The mesh is smaller than 2 mm or larger than 10 m. Most often its unit is not metres; write `units`.",
     ),
 ];
 

@@ -1,6 +1,6 @@
 //! The same robot with other limits.
 
-use super::{DynamicLimits, ModelError, RobotModel};
+use super::{Dof, DynamicLimits, ModelError, RobotModel};
 use crate::ids::DofIdx;
 
 impl RobotModel {
@@ -30,6 +30,22 @@ impl RobotModel {
             dof.continuous &= dof.lower.is_infinite() && dof.upper.is_infinite();
         }
         Ok(model)
+    }
+
+    /// The same robot with limits that replace those of the description, wider ones included: `limits` gives lower bound,
+    /// upper bound and speeds of each degree of freedom.
+    ///
+    /// A continuous joint stays continuous where both bounds are infinite. Bounds must be in order and not NaN.
+    pub fn with_limits(&self, limits: impl Fn(DofIdx, &Dof) -> (f64, f64, DynamicLimits)) -> Self {
+        let mut model = self.clone();
+        for (index, described) in self.dofs.enumerate() {
+            let (lower, upper, dynamics) = limits(index, described);
+            assert!(lower <= upper, "bounds of {} are in order", described.name);
+            let dof = &mut model.dofs[index];
+            dof.continuous &= lower.is_infinite() && upper.is_infinite();
+            (dof.lower, dof.upper, dof.dynamics) = (lower, upper, dynamics);
+        }
+        model
     }
 }
 

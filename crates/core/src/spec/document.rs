@@ -157,6 +157,8 @@ pub(super) fn parse(sources: &Sources, file: FileId, diagnostics: &mut Diagnosti
     errors.sort_by_key(|(place, _)| place.start);
     // One finding a line: what follows on a broken line is confusion of the parser.
     errors.dedup_by_key(|(place, _)| sources.line_column(*place).line);
+    // A list that is not closed swallows the lines below it, one fault each.
+    errors.dedup_by_key(|(_, message)| *message);
     for (place, message) in errors {
         diagnostics.push(syntax_error(text, place, message));
     }
@@ -171,6 +173,11 @@ fn syntax_error(text: &str, place: Span, message: &str) -> Diagnostic {
             .expected("a value");
     }
     let message = message.lines().next().unwrap_or_default();
+    if message.starts_with("missing comma between array elements") {
+        return Diagnostic::error("R0101", "a list is not closed, or its values are not separated")
+            .at(place, "not a value of the list")
+            .expected("`]` or `,` before this");
+    }
     match message.split_once(", expected ") {
         Some((what, "nothing")) => Diagnostic::error("R0101", what).at(place, "not TOML"),
         Some((what, expected)) => Diagnostic::error("R0101", what).at(place, "not TOML").expected(expected),
@@ -199,7 +206,7 @@ fn node(file: FileId, source: &Spanned<DeValue<'_>>, diagnostics: &mut Diagnosti
     let place = span(file, source.span());
     let mut unreadable = |what: &str, expected: &str| {
         diagnostics.push(
-            Diagnostic::error("R0101", format!("{what} cannot be read"))
+            Diagnostic::error("R0105", format!("{what} cannot be read"))
                 .at(place, "too large")
                 .expected(expected),
         );

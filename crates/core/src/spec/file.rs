@@ -19,7 +19,8 @@ pub(super) struct SpecFile {
     pub(super) folder: PathBuf,
 }
 
-/// Reads and checks the specification at `path`; `None` when there is no text. `at` is the reference to the file.
+/// Reads and checks the specification at `path`; `None` when there is no text or its syntax is broken. `at` is the reference
+/// to the file.
 pub(super) fn open(
     system: &dyn System,
     sources: &mut Sources,
@@ -35,7 +36,8 @@ pub(super) fn open(
     let table = document::parse(sources, file, &mut found);
     let mut checked = Diagnostics::new();
     validate(&table, place, kind.schema(), parameters, &mut checked);
-    if found.has_errors() {
+    let broken_syntax = found.iter().any(|d| d.code == "R0101");
+    if broken_syntax {
         // What the parser skipped would be reported as missing, and what it made up as wrong.
         let broken: Vec<usize> = lines(sources, &found);
         for finding in checked {
@@ -47,9 +49,9 @@ pub(super) fn open(
     } else {
         found.extend(checked);
     }
-    diagnostics.extend(by_place(found));
+    diagnostics.extend(found);
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    Some(SpecFile { table, place, folder })
+    (!broken_syntax).then_some(SpecFile { table, place, folder })
 }
 
 /// Reads a text into `sources`.

@@ -6,13 +6,24 @@
 //! tree of values with places, checked against the table; then as typed values, checked against the robot's model.
 //! Both steps report all they find and go on.
 
+mod annotations;
+mod arms;
 mod document;
+mod extent;
 mod file;
+mod goals;
+mod grippers;
+mod groups;
 mod json_schema;
+mod limits;
+mod lookup;
 mod parameters;
 mod reference;
+mod robot;
 mod robot_schema;
 mod schema;
+mod shapes;
+mod task;
 mod task_schema;
 mod validate;
 
@@ -21,7 +32,9 @@ pub use parameters::{
     KindParameters, Parameter, ParameterDefault, ParameterKind, ParameterTable, ParameterValue, Parameters,
 };
 pub use reference::reference;
+pub use robot::{RobotSpec, load_robot};
 pub use schema::{Key, Kind, Length, Presence, Range, Rule, TableSchema, Text};
+pub use task::{TaskSpec, load_task};
 
 /// The formats of specifications.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

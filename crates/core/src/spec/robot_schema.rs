@@ -121,7 +121,7 @@ static GRIPPER: TableSchema = TableSchema {
         Key::required("joints", JOINTS, "The joints that move the fingers; joints that mimic are not named."),
         Key::required(
             "closing",
-            Kind::List(&Kind::Integer(-1, 1), Length::AtLeast(1)),
+            Kind::List(&Kind::Number(Range::between(-1.0, 1.0)), Length::AtLeast(1)),
             "For each of `joints`: 1 or -1 when it closes by growing or shrinking, 0 when it only shapes the hand.",
         ),
         Key::required(

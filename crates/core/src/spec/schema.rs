@@ -161,6 +161,9 @@ impl Range {
 
     /// The range in words, or `None` for [`Range::ANY`].
     pub fn describe(self) -> Option<String> {
+        if self == Self::HALF_TURN {
+            return Some("from 0 to pi".to_owned());
+        }
         match (self.min.is_finite(), self.max.is_finite()) {
             (false, false) => None,
             (true, false) if self.above_min => Some(format!("above {}", self.min)),

@@ -1,5 +1,7 @@
 //! Checks a tree of values against a schema and finds everything that is wrong with it.
 
+use std::f64::consts::PI;
+
 use super::document::{Entry, Node, Table, Value};
 use super::parameters::{KindParameters, Parameter, ParameterKind, ParameterTable};
 use super::schema::{Key, Kind, Length, Presence, Range, Rule, TableSchema, Text};
@@ -13,10 +15,12 @@ pub(super) fn validate(
     parameters: &ParameterTable,
     diagnostics: &mut Diagnostics,
 ) {
-    Checker { parameters, diagnostics }.table(table, place, schema, "");
+    Checker { root: schema, parameters, diagnostics }.table(table, place, schema, "");
 }
 
 struct Checker<'a> {
+    /// The schema of the whole file.
+    root: &'a TableSchema,
     parameters: &'a ParameterTable,
     diagnostics: &'a mut Diagnostics,
 }
@@ -24,34 +28,52 @@ struct Checker<'a> {
 impl Checker<'_> {
     /// `path` names the table in messages; empty for the whole file.
     fn table(&mut self, table: &Table, place: Span, schema: &TableSchema, path: &str) {
+        // Keys that an unknown key probably stands for.
+        let mut meant = Vec::new();
         for entry in &table.entries {
             match schema.key(&entry.key) {
                 Some(key) => self.node(&entry.node, key.kind, &join(path, &entry.key)),
-                None => {
-                    let known = schema.keys.iter().map(|k| k.name);
-                    self.unknown("R0102", "key", entry, known, &listed(schema.keys.iter().map(|k| k.name)));
-                }
+                None => meant.extend(self.unknown_key(entry, schema)),
             }
         }
-        let missing: Vec<&Key> = schema
-            .keys
-            .iter()
-            .filter(|key| key.presence == Presence::Required && table.get(key.name).is_none())
-            .collect();
-        for key in missing {
-            self.missing(key, place, path);
+        for key in schema.keys {
+            let absent = table.get(key.name).is_none() && !meant.contains(&key.name);
+            if absent && key.presence == Presence::Required {
+                self.missing(key, place, path);
+            }
         }
         for rule in schema.rules {
             self.rule(table, place, schema, rule, path);
         }
     }
 
+    /// Reports an unknown key; returns the key it probably stands for.
+    fn unknown_key(&mut self, entry: &Entry, schema: &TableSchema) -> Option<&'static str> {
+        let known = || schema.keys.iter().map(|k| k.name);
+        let near = nearest(&entry.key, known());
+        let elsewhere = if near.is_none() { heading_of(self.root, &entry.key, "") } else { None };
+        let mut diagnostic = Diagnostic::error("R0102", format!("there is no key `{}` here", entry.key))
+            .at(entry.key_span, "unknown key")
+            .expected(format!("one of {}", listed(known())));
+        if let Some(near) = near {
+            diagnostic = diagnostic.hint(format!("did you mean `{near}`?"));
+        } else if let Some(heading) = elsewhere {
+            diagnostic = diagnostic.hint(format!("`{}` is a key of {heading}", entry.key));
+        }
+        self.diagnostics.push(diagnostic);
+        near
+    }
+
     fn missing(&mut self, key: &Key, place: Span, path: &str) {
         let what = if path.is_empty() { "this file".to_owned() } else { format!("`{path}`") };
+        let expected = match key.kind {
+            Kind::Tables(..) => format!("a table `[[{}]]`", key.name),
+            kind => format!("`{}`: {}", key.name, describe(kind)),
+        };
         self.diagnostics.push(
             Diagnostic::error("R0103", format!("{what} lacks the key `{}`", key.name))
                 .at(place, format!("`{}` is missing", key.name))
-                .expected(format!("`{}`: {}", key.name, describe(key.kind)))
+                .expected(expected)
                 .hint(first_sentence(key.doc)),
         );
     }
@@ -118,7 +140,7 @@ impl Checker<'_> {
             (Kind::Bool, Value::Bool(_)) => {}
             (Kind::Integer(min, max), Value::Integer(i)) => {
                 if !(min..=max).contains(i) {
-                    self.out_of_range(node, path, i, &integers(min, max));
+                    self.out_of_range(node, path, i, &integers(min, max), None);
                 }
             }
             (Kind::Number(range), Value::Integer(_) | Value::Float(_)) => self.number(node, range, path),
@@ -143,6 +165,9 @@ impl Checker<'_> {
                 }
             }
             (Kind::Parameters, Value::Table(table)) => self.parameter_kinds(table),
+            (Kind::Tables(..), _) => {
+                self.wrong_kind(node, &format!("tables with the heading `[[{path}]]`"), path)
+            }
             _ => self.wrong_kind(node, &describe(kind), path),
         }
     }
@@ -157,7 +182,9 @@ impl Checker<'_> {
             return;
         };
         if !range.contains(x) {
-            self.out_of_range(node, path, x, &describe(Kind::Number(range)));
+            let degrees = range.max == PI && range.contains(x.to_radians());
+            let hint = degrees.then(|| format!("angles are radians: {x} degrees are {:.4}", x.to_radians()));
+            self.out_of_range(node, path, x, &describe(Kind::Number(range)), hint);
         }
     }
 
@@ -275,13 +302,34 @@ impl Checker<'_> {
         );
     }
 
-    fn out_of_range(&mut self, node: &Node, path: &str, value: impl std::fmt::Display, expected: &str) {
-        self.diagnostics.push(
-            Diagnostic::error("R0105", format!("`{path}` is {value}"))
-                .at(node.span, "out of range")
-                .expected(expected),
-        );
+    fn out_of_range(
+        &mut self,
+        node: &Node,
+        path: &str,
+        value: impl std::fmt::Display,
+        expected: &str,
+        hint: Option<String>,
+    ) {
+        let mut diagnostic = Diagnostic::error("R0105", format!("`{path}` is {value}"))
+            .at(node.span, "out of range")
+            .expected(expected);
+        diagnostic.hint = hint;
+        self.diagnostics.push(diagnostic);
     }
+}
+
+/// Where in `schema` there is a key of this name, as a heading; `path` is that of `schema`.
+fn heading_of(schema: &TableSchema, name: &str, path: &str) -> Option<String> {
+    schema.keys.iter().find_map(|key| {
+        let (below, heading) = match key.kind {
+            Kind::Table(below) => (below, format!("`[{}]`", join(path, key.name))),
+            Kind::Tables(below, _) => (below, format!("`[[{}]]`", join(path, key.name))),
+            Kind::Map(_, Kind::Table(below)) => (*below, format!("`[{}.NAME]`", join(path, key.name))),
+            _ => return None,
+        };
+        let here = below.key(name).is_some().then_some(heading);
+        here.or_else(|| heading_of(below, name, &join(path, key.name)))
+    })
 }
 
 /// The kind of value that a parameter takes.
@@ -307,7 +355,7 @@ pub(super) fn describe(kind: Kind) -> String {
         Kind::Choice(words) => format!("one of {}", quoted(words)),
         Kind::List(item, length) => describe_list(*item, length),
         Kind::Table(_) => "a table".to_owned(),
-        Kind::Tables(..) => "an array of tables".to_owned(),
+        Kind::Tables(..) => "tables".to_owned(),
         Kind::Map(key, value) => format!("a table from {} to {}", key.describe(), describe(*value)),
         Kind::Parameters => "a table for each artefact kind".to_owned(),
     }
@@ -360,7 +408,14 @@ fn join(path: &str, key: &str) -> String {
 
 fn first_sentence(doc: &str) -> String {
     let end = doc.find(". ").or_else(|| doc.rfind('.')).unwrap_or(doc.len());
-    doc[..end].to_owned()
+    let mut letters = doc[..end].chars();
+    // Hints begin in lower case, unless the first word is an abbreviation.
+    match letters.next() {
+        Some(first) if letters.clone().next().is_some_and(char::is_lowercase) => {
+            first.to_lowercase().chain(letters).collect()
+        }
+        _ => doc[..end].to_owned(),
+    }
 }
 
 #[cfg(test)]
@@ -408,7 +463,7 @@ mod tests {
         let text = "format = 1\nname = \"a b\"\ndescripton = \"a.urdf\"\n[base]\nkind = \"planer\"\n";
         let found = findings(SpecKind::Robot, text);
         let codes: Vec<&str> = found.lines().map(|l| &l[l.find('[').unwrap() + 1..][..5]).collect();
-        assert_eq!(codes, ["R0103", "R0111", "R0102", "R0108"], "{found}");
+        assert_eq!(codes, ["R0111", "R0102", "R0108"], "{found}");
         assert!(found.contains("a.toml:3:1: error[R0102]: there is no key `descripton` here"), "{found}");
         assert!(found.contains("did you mean `description`?"), "{found}");
         assert!(found.contains("did you mean \"planar\"?"), "{found}");
@@ -444,7 +499,8 @@ mod tests {
                     let mut diagnostics = Diagnostics::new();
                     let tree = super::super::document::parse(&sources, file, &mut diagnostics);
                     let parameters = table();
-                    let mut checker = Checker { parameters: &parameters, diagnostics: &mut diagnostics };
+                    let mut checker =
+                        Checker { root: schema, parameters: &parameters, diagnostics: &mut diagnostics };
                     checker.node(&tree.entries[0].node, key.kind, key.name);
                     assert_eq!(diagnostics.to_plain_text(&sources), "");
                     *visited += 1;

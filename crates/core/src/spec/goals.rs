@@ -1,0 +1,42 @@
+//! The goals of a task specification.
+
+use super::document::{Node, Table};
+use super::extent::extent;
+use super::lookup;
+use crate::Pose;
+use crate::diag::{Diagnostic, Diagnostics};
+use crate::task::{Destination, Goal, Object, Obstacle};
+
+/// A `[[goal]]` table as a goal, or `None` with findings.
+pub(super) fn read(
+    table: &Table,
+    objects: &[Object],
+    obstacles: &[Obstacle],
+    diagnostics: &mut Diagnostics,
+) -> Option<Goal> {
+    let name = table.text("place")?;
+    if obstacles.iter().any(|o| o.name == name.0) {
+        diagnostics.push(
+            Diagnostic::error("R0504", format!("\"{}\" is an obstacle, which stays where it is", name.0))
+                .at(name.1, "an obstacle")
+                .expected("an object")
+                .hint("write it as `[[object]]` if it can be moved"),
+        );
+        return None;
+    }
+    let known = objects.iter().map(|o| o.name.as_str());
+    let object = lookup::named(name, known, "R0504", "an object of this task", diagnostics)?;
+    let destination = match (table.table("at"), table.table("region")) {
+        (Some(_), _) => Destination::Pose {
+            world_from_object: lookup::origin(table, "at").pose(),
+            any_yaw: table.get("any_yaw").and_then(Node::boolean).unwrap_or(false),
+        },
+        (None, Some(region)) => Destination::Region {
+            world_from_region: lookup::origin(region, "pose").pose(),
+            size: region.get("size").and_then(Node::array::<2>)?,
+            origin_height: -extent(&objects[object].geometry, &Pose::identity())?.low.z,
+        },
+        (None, None) => return None,
+    };
+    Some(Goal::Place { object, destination, keep_upright: table.number("keep_upright") })
+}

@@ -1,0 +1,7 @@
+//! Specifications: golden diagnostics, the specifications that ship, and texts made worse on purpose.
+
+mod disk;
+mod findings;
+mod mutations;
+mod shipped;
+mod values;

@@ -1,0 +1,97 @@
+//! What specifications say arrives as values.
+
+use std::path::Path;
+
+use robotc_core::diag::Sources;
+use robotc_core::model::Shape;
+use robotc_core::robot::{Base, Robot};
+use robotc_core::spec::{ParameterValue, TaskSpec, load_task};
+use robotc_core::task::{Destination, Goal};
+
+use super::disk::{Disk, parameters};
+
+fn wedge() -> TaskSpec {
+    let disk = Disk::of_checkout("tests/specs");
+    let mut sources = Sources::new();
+    let (spec, found) = load_task(&disk, &mut sources, Path::new("files/wedge.task.toml"), &parameters());
+    assert!(found.is_empty(), "{}", found.to_plain_text(&sources));
+    spec.unwrap()
+}
+
+fn names(robot: &Robot) -> Vec<(&str, &str)> {
+    let name = |link| robot.model.links()[link].name.as_str();
+    robot.ignored_pairs.iter().map(|&(a, b)| (name(a), name(b))).collect()
+}
+
+#[test]
+fn arms_and_pairs_come_from_the_srdf() {
+    let spec = wedge();
+    let robot = &spec.task.robot;
+    let [arm] = &robot.arms[..] else { panic!("one arm: {:?}", robot.arms) };
+    assert_eq!((arm.name.as_str(), arm.gripper, arm.dofs.len()), ("upper", Some(0), 3));
+    assert_eq!(arm.home, Some(vec![0.1, 0.2, 0.3]));
+    assert_eq!(names(robot), [("base_link", "forearm"), ("base_link", "palm"), ("forearm", "wrist")]);
+}
+
+#[test]
+fn limits_follow_their_precedence() {
+    let spec = wedge();
+    let model = &spec.task.robot.model;
+    let [shoulder, elbow] = ["shoulder", "elbow"].map(|name| &model.dofs()[model.dof_named(name).unwrap()]);
+    let values = |d: &robotc_core::model::DynamicLimits| [d.velocity, d.acceleration, d.jerk];
+    assert_eq!(values(&shoulder.dynamics), [1.0, 3.0, 50.0], "specification, joint_limits, default");
+    assert_eq!(values(&elbow.dynamics), [2.0, 5.0, 40.0], "description, default, joint_limits");
+    assert_eq!((shoulder.lower, shoulder.upper), (-3.1, 3.0));
+    assert!(model.dofs().iter().all(|d| d.dynamics.given == [true; 3]));
+}
+
+#[test]
+fn annotations_arrive() {
+    let spec = wedge();
+    let robot = &spec.robot.robot;
+    let Base::Planar { footprint, holonomic } = &robot.base else { panic!("planar") };
+    // Written clockwise, kept counter-clockwise.
+    assert_eq!((footprint[0], footprint[1], *holonomic), ([-0.2, 0.2], [-0.2, -0.2], false));
+    let weights: Vec<(&str, f64)> =
+        robot.weights.iter().map(|&(dof, w)| (robot.model.dofs()[dof].name.as_str(), w)).collect();
+    assert_eq!(weights, [("shoulder", 3.0), ("elbow", 2.0)]);
+    let gripper = &robot.grippers[0];
+    assert_eq!((gripper.preshapes.len(), &gripper.preshapes[0].values), (1, &vec![0.04]));
+    assert_eq!(spec.robot.tools[0].xyz, [0.0, 0.0, 0.07]);
+}
+
+#[test]
+fn parameters_of_the_task_override_those_of_the_robot() {
+    let spec = wedge();
+    assert_eq!(spec.robot.parameters.get("grasp_set", "rolls"), Some(&ParameterValue::Integer(4)));
+    assert_eq!(spec.parameters.get("grasp_set", "rolls"), Some(&ParameterValue::Integer(16)));
+    assert_eq!(spec.parameters.get("grasp_set", "standoff"), Some(&ParameterValue::Number(0.01)));
+}
+
+#[test]
+fn the_start_is_home_preshape_and_what_is_said() {
+    let task = wedge().task;
+    let value = |name| task.start[task.robot.model.dof_named(name).unwrap()];
+    assert_eq!(["shoulder", "elbow", "roll", "left_jaw"].map(value), [0.1, -1.0, 0.3, 0.04]);
+    assert_eq!((task.seed, task.world_from_robot.translation.z), (7, 0.5));
+}
+
+#[test]
+fn meshes_stand_up_and_lie_on_surfaces() {
+    let task = wedge().task;
+    let wedge = &task.objects[0].geometry[0];
+    assert_eq!(wedge.colour, Some([1.0, 0.0, 0.2, 1.0]));
+    let Shape::Mesh { mesh, .. } = &wedge.shape else { panic!("a mesh") };
+    let (low, high) = mesh.bounds().unwrap();
+    // Centimetres by ten: a tenth of what the file says; its y is up.
+    let expected = [-0.002, -0.003, -0.001, 0.002, 0.003, 0.005];
+    let found = [low.x, low.y, low.z, high.x, high.y, high.z];
+    assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+    let Goal::Place { destination, keep_upright, .. } = &task.goals[0];
+    let Destination::Region { origin_height, .. } = destination else { panic!("a region") };
+    assert!((origin_height - 0.001).abs() < 1e-12);
+    assert_eq!(*keep_upright, Some(0.2));
+    let Goal::Place { object, destination, .. } = &task.goals[1];
+    assert_eq!(*object, 1);
+    assert!(matches!(destination, Destination::Pose { any_yaw: true, .. }));
+}
