@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use robotc_core::model::TriMesh;
 
 use super::part::Part;
-use super::shape::{Loft, Section, along_minus_y, along_y, at, drum, lathe, moved, rounded_box};
+use super::shape::{Loft, Section, along_minus_y, along_y, at, between, drum, lathe, moved, rounded_box};
 
 /// A dark disc that closes the outer side of a drum.
 fn cap(radius: f64, low: f64, high: f64) -> TriMesh {
@@ -19,14 +19,6 @@ fn cap(radius: f64, low: f64, high: f64) -> TriMesh {
 /// A dark ring between two links that turn about a common axis.
 fn seam(radius: f64, low: f64, high: f64) -> TriMesh {
     drum(radius, low, high, 0.0)
-}
-
-/// The triangles that reach into a range of heights.
-fn between(mesh: &TriMesh, low: f64, high: f64) -> TriMesh {
-    let is_in = |v: u32| (low..high).contains(&mesh.vertices[v as usize].z);
-    let faces: Vec<_> = mesh.faces.iter().copied().filter(|face| face.iter().any(|v| is_in(*v))).collect();
-    let vertices = faces.iter().flatten().map(|v| mesh.vertices[*v as usize]).collect();
-    TriMesh { vertices, faces: (0..faces.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect() }
 }
 
 /// All links.
@@ -48,11 +40,10 @@ fn link0() -> Part {
     .mesh();
     let socket = moved(&rounded_box([0.030, 0.090, 0.052], 0.006, 0.004), [-0.138, 0.0, 0.032]);
     let ring = seam(0.0535, 0.130, 0.1415);
-    Part::new("link0", [body.clone()]).trim([ring.clone(), socket.clone()]).cover(
-        "_hull",
-        &[&body, &ring, &socket],
-        Vector3::z(),
-    )
+    Part::new("link0", [body.clone()])
+        .trim([ring.clone(), socket.clone()])
+        .cover("_foot_hull", &[&between(&body, -0.1, 0.05), &socket], Vector3::z())
+        .cover("_hull", &[&between(&body, 0.04, 0.2), &ring], Vector3::z())
 }
 
 fn link1() -> Part {
@@ -153,8 +144,8 @@ fn link5() -> Part {
     let wrist = along_y(&drum(0.0490, 0.052, 0.117, 0.009));
     Part::new("link5", [limb.clone(), wrist])
         .trim([along_y(&cap(0.0370, 0.110, 0.120))])
-        .cover("_upper_hull", &[&between(&limb, -0.3, -0.12)], Vector3::z())
-        .cover("_hull", &[&between(&limb, -0.2, 0.1)], Vector3::z())
+        .cover("_upper_hull", &[&between(&limb, -0.3, -0.165)], Vector3::z())
+        .cover("_hull", &[&between(&limb, -0.14, 0.1)], Vector3::z())
 }
 
 fn link6() -> Part {

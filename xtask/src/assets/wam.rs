@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use robotc_core::model::TriMesh;
 
 use super::part::Part;
-use super::shape::{Loft, Section, along_minus_y, along_y, drum, join, lathe, moved, rounded_box};
+use super::shape::{Loft, Section, along_minus_y, along_y, between, drum, join, lathe, moved, rounded_box};
 
 /// All links of the arm.
 pub(crate) fn parts() -> Vec<Part> {
@@ -41,11 +41,10 @@ fn base() -> Part {
     .mesh();
     let ring = drum(0.1120, 0.140, 0.1620, 0.0);
     let panel = moved(&rounded_box([0.020, 0.170, 0.060], 0.008, 0.006), [-0.218, 0.0, 0.036]);
-    Part::new("base", [foot.clone()]).trim([ring.clone(), panel.clone()]).cover(
-        "_hull",
-        &[&foot, &ring, &panel],
-        Vector3::z(),
-    )
+    Part::new("base", [foot.clone()])
+        .trim([ring.clone(), panel.clone()])
+        .cover("_foot_hull", &[&between(&foot, -0.1, 0.06), &panel], Vector3::z())
+        .cover("_hull", &[&between(&foot, 0.05, 0.2), &ring], Vector3::z())
 }
 
 fn shoulder_yaw() -> Part {

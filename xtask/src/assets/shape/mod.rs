@@ -106,6 +106,14 @@ pub(crate) fn along_minus_x(mesh: &TriMesh) -> TriMesh {
     mesh.transformed(&at([0.0; 3], [0.0, -FRAC_PI_2, 0.0]))
 }
 
+/// The triangles that reach into a range of heights.
+pub(crate) fn between(mesh: &TriMesh, low: f64, high: f64) -> TriMesh {
+    let is_in = |v: u32| (low..high).contains(&mesh.vertices[v as usize].z);
+    let faces: Vec<_> = mesh.faces.iter().copied().filter(|face| face.iter().any(|v| is_in(*v))).collect();
+    let vertices = faces.iter().flatten().map(|v| mesh.vertices[*v as usize]).collect();
+    TriMesh { vertices, faces: (0..faces.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect() }
+}
+
 /// Several meshes as one.
 pub(crate) fn join(meshes: impl IntoIterator<Item = TriMesh>) -> TriMesh {
     let mut all = TriMesh::default();

@@ -1,0 +1,300 @@
+//! The robots and tasks in `specs/`: they load without a finding, what a robot touches with contains what is seen of
+//! it, and frames agree with the vendors' descriptions where both have them.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use nalgebra::Point3;
+use robotc_core::diag::Sources;
+use robotc_core::geom::ConvexPart;
+use robotc_core::model::{Configuration, Geometry, Kinematics, LinkPoses, RobotModel, Shape};
+use robotc_core::system::{ReadError, System};
+use robotc_core::urdf::{self, LoadOptions, MeshPolicy};
+
+/// The files of this machine.
+struct Disk;
+
+impl System for Disk {
+    fn read(&self, path: &Path) -> Result<Vec<u8>, ReadError> {
+        std::fs::read(path).map_err(|error| ReadError::Unreadable(error.to_string()))
+    }
+
+    fn exists(&self, path: &Path) -> bool {
+        path.exists()
+    }
+}
+
+fn specs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs")
+}
+
+/// Files below `folder` whose name ends with `ending`, in order.
+fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("specs are part of the repository") {
+        let path = entry.expect("a readable folder").path();
+        if path.is_dir() {
+            found.extend(files(&path, ending));
+        } else if path.to_string_lossy().ends_with(ending) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn load(path: &Path, meshes: MeshPolicy) -> RobotModel {
+    let mut sources = Sources::default();
+    let (model, found) =
+        urdf::load(&Disk, &mut sources, path, &LoadOptions { meshes, ..LoadOptions::default() });
+    model.unwrap_or_else(|| panic!("{}", found.to_plain_text(&sources)))
+}
+
+#[test]
+fn descriptions_load_without_a_finding() {
+    let descriptions = files(&specs(), ".urdf");
+    assert!(descriptions.len() >= 3);
+    for path in descriptions {
+        let mut sources = Sources::default();
+        let (model, found) = urdf::load(&Disk, &mut sources, &path, &LoadOptions::default());
+        assert!(found.is_empty(), "{}", found.to_plain_text(&sources));
+        assert!(model.is_some());
+    }
+}
+
+/// How far points are outside a shape, or minus how deep inside; metres (a lower bound beside edges).
+fn heights(geometry: &Geometry, points: &[Point3<f64>]) -> Vec<f64> {
+    let pose = geometry.origin.pose();
+    let local = points.iter().map(|p| pose.inverse_transform_point(p));
+    match &geometry.shape {
+        Shape::Box { size } => local
+            .map(|p| (0..3).map(|i| p[i].abs() - size[i] / 2.0).fold(f64::NEG_INFINITY, f64::max))
+            .collect(),
+        Shape::Cylinder { radius, length } => {
+            local.map(|p| (p.x.hypot(p.y) - radius).max(p.z.abs() - length / 2.0)).collect()
+        }
+        Shape::Capsule { radius, length } => {
+            local.map(|p| p.x.hypot(p.y).hypot((p.z.abs() - length / 2.0).max(0.0)) - radius).collect()
+        }
+        Shape::Sphere { radius } => local.map(|p| p.coords.norm() - radius).collect(),
+        Shape::Mesh { mesh, uri } => {
+            let part = ConvexPart::hull_of(&mesh.vertices).expect(uri);
+            local.map(|p| part.height(&p)).collect()
+        }
+    }
+}
+
+#[test]
+fn collision_meshes_are_convex() {
+    for path in files(&specs(), ".urdf") {
+        let model = load(&path, MeshPolicy::Load);
+        for link in model.links().iter() {
+            for geometry in &link.collisions {
+                let Shape::Mesh { mesh, uri } = &geometry.shape else { continue };
+                let volume: f64 = (0..mesh.faces.len())
+                    .map(|face| {
+                        let [a, b, c] = mesh.triangle(face);
+                        a.coords.dot(&b.coords.cross(&c.coords)) / 6.0
+                    })
+                    .sum();
+                let hull = ConvexPart::hull_of(&mesh.vertices).expect(uri);
+                assert!((volume / hull.volume() - 1.0).abs() < 1e-3, "{uri}: {volume} of {}", hull.volume());
+            }
+        }
+    }
+}
+
+#[test]
+fn collision_shapes_contain_what_is_seen() {
+    for path in files(&specs(), ".urdf") {
+        let model = load(&path, MeshPolicy::Load);
+        for link in model.links().iter() {
+            for visual in &link.visuals {
+                let Shape::Mesh { mesh, uri } = &visual.shape else {
+                    panic!("{}: visuals are meshes", link.name)
+                };
+                let pose = visual.origin.pose();
+                let vertices: Vec<Point3<f64>> = mesh.vertices.iter().map(|v| pose * v).collect();
+                let by_shape: Vec<Vec<f64>> = link.collisions.iter().map(|c| heights(c, &vertices)).collect();
+                for (i, vertex) in vertices.iter().enumerate() {
+                    let out = by_shape.iter().map(|heights| heights[i]).fold(f64::INFINITY, f64::min);
+                    assert!(out < 1e-3, "{}: {uri} at {vertex} is {out} m outside", link.name);
+                }
+            }
+        }
+    }
+}
+
+/// Corners of the shapes, enough of them to see how far they reach.
+fn corners(geometry: &Geometry) -> Vec<Point3<f64>> {
+    let pose = geometry.origin.pose();
+    let local: Vec<Point3<f64>> = match &geometry.shape {
+        Shape::Mesh { mesh, .. } => mesh.vertices.clone(),
+        Shape::Box { size } => {
+            let [a, b, c] = size.map(|s| s / 2.0);
+            (0..8).map(|i| Point3::new(sign(i, 0) * a, sign(i, 1) * b, sign(i, 2) * c)).collect()
+        }
+        Shape::Cylinder { radius, length } => (0..32)
+            .map(|i| {
+                let angle = std::f64::consts::TAU * f64::from(i / 2) / 16.0;
+                Point3::new(radius * angle.cos(), radius * angle.sin(), sign(i, 0) * length / 2.0)
+            })
+            .collect(),
+        Shape::Capsule { .. } | Shape::Sphere { .. } => Vec::new(),
+    };
+    local.iter().map(|p| pose * p).collect()
+}
+
+fn sign(bits: i32, bit: i32) -> f64 {
+    if bits >> bit & 1 == 1 { 1.0 } else { -1.0 }
+}
+
+#[test]
+fn collision_shapes_keep_close_to_what_is_seen() {
+    for path in files(&specs(), ".urdf") {
+        let model = load(&path, MeshPolicy::Load);
+        for link in model.links().iter() {
+            let seen: Vec<Point3<f64>> = link.visuals.iter().flat_map(corners).collect();
+            let touched: Vec<Point3<f64>> = link.collisions.iter().flat_map(corners).collect();
+            if touched.is_empty() {
+                continue;
+            }
+            let hull = ConvexPart::hull_of(&seen).expect("a link that is touched is seen");
+            for p in &touched {
+                let gap = seen.iter().map(|v| (v - p).norm()).fold(f64::INFINITY, f64::min);
+                let out = hull.height(p);
+                assert!(gap < 0.06 && out < 0.04, "{}: {p} is {gap} m, {out} m off", link.name);
+            }
+        }
+    }
+}
+
+/// A shipped robot, a real description, links and joints of both that are the same.
+struct Twin {
+    ours: &'static str,
+    theirs: &'static str,
+    links: &'static [(&'static str, &'static str)],
+    joints: &'static [(&'static str, &'static str)],
+}
+
+const TWINS: &[Twin] = &[
+    Twin {
+        ours: "panda/panda.urdf",
+        theirs: "robots/franka_panda_hand/panda.urdf",
+        links: &[
+            ("panda_link0", "panda_link0"),
+            ("panda_link1", "panda_link1"),
+            ("panda_link2", "panda_link2"),
+            ("panda_link3", "panda_link3"),
+            ("panda_link4", "panda_link4"),
+            ("panda_link5", "panda_link5"),
+            ("panda_link6", "panda_link6"),
+            ("panda_link7", "panda_link7"),
+            ("panda_link8", "panda_link8"),
+            ("panda_hand", "panda_hand"),
+            ("panda_leftfinger", "panda_leftfinger"),
+        ],
+        joints: &[
+            ("panda_joint1", "panda_joint1"),
+            ("panda_joint2", "panda_joint2"),
+            ("panda_joint3", "panda_joint3"),
+            ("panda_joint4", "panda_joint4"),
+            ("panda_joint5", "panda_joint5"),
+            ("panda_joint6", "panda_joint6"),
+            ("panda_joint7", "panda_joint7"),
+            ("panda_finger_joint1", "panda_finger_joint1"),
+        ],
+    },
+    Twin {
+        ours: "ur5e/ur5e.urdf",
+        theirs: "arms/ur_ur5e.urdf",
+        links: &[
+            ("base_link", "base_link"),
+            ("shoulder_link", "shoulder_link"),
+            ("upper_arm_link", "upper_arm_link"),
+            ("forearm_link", "forearm_link"),
+            ("wrist_1_link", "wrist_1_link"),
+            ("wrist_2_link", "wrist_2_link"),
+            ("wrist_3_link", "wrist_3_link"),
+            ("tool0", "tool0"),
+        ],
+        joints: &[
+            ("shoulder_pan_joint", "shoulder_pan_joint"),
+            ("shoulder_lift_joint", "shoulder_lift_joint"),
+            ("elbow_joint", "elbow_joint"),
+            ("wrist_1_joint", "wrist_1_joint"),
+            ("wrist_2_joint", "wrist_2_joint"),
+            ("wrist_3_joint", "wrist_3_joint"),
+        ],
+    },
+    Twin {
+        ours: "wam/wam.urdf",
+        theirs: "robots/barrett_wam7_bhand/wam7_bhand.urdf",
+        links: &[
+            ("base_link", "wam/base_link"),
+            ("shoulder_yaw_link", "wam/shoulder_yaw_link"),
+            ("shoulder_pitch_link", "wam/shoulder_pitch_link"),
+            ("upper_arm_link", "wam/upper_arm_link"),
+            ("forearm_link", "wam/forearm_link"),
+            ("wrist_yaw_link", "wam/wrist_yaw_link"),
+            ("wrist_pitch_link", "wam/wrist_pitch_link"),
+            ("wrist_palm_link", "wam/wrist_palm_link"),
+            ("hand_palm", "wam/bhand/bhand_palm_link"),
+            ("finger_1_inner_link", "wam/bhand/finger_1/med_link"),
+            ("finger_3_inner_link", "wam/bhand/finger_3/med_link"),
+        ],
+        joints: &[
+            ("base_yaw_joint", "wam/base_yaw_joint"),
+            ("shoulder_pitch_joint", "wam/shoulder_pitch_joint"),
+            ("shoulder_yaw_joint", "wam/shoulder_yaw_joint"),
+            ("elbow_pitch_joint", "wam/elbow_pitch_joint"),
+            ("wrist_yaw_joint", "wam/wrist_yaw_joint"),
+            ("wrist_pitch_joint", "wam/wrist_pitch_joint"),
+            ("palm_yaw_joint", "wam/palm_yaw_joint"),
+            ("finger_1_spread_joint", "wam/bhand/finger_1/prox_joint"),
+            ("finger_1_inner_joint", "wam/bhand/finger_1/med_joint"),
+            ("finger_3_inner_joint", "wam/bhand/finger_3/med_joint"),
+        ],
+    },
+];
+
+/// Poses of named links, relative to the first of them, with named joints at given values.
+fn poses(model: &Arc<RobotModel>, joints: &[(&str, f64)], links: &[&str]) -> Vec<robotc_core::Pose> {
+    let mut q = Configuration::neutral(model);
+    for (joint, value) in joints {
+        q.set(&[model.dof_named(joint).expect(joint)], &[*value]);
+    }
+    let mut poses = LinkPoses::default();
+    Kinematics::new(Arc::clone(model)).link_poses(&q, &mut poses);
+    let of = |name: &str| *poses.root_from(model.link_named(name).expect(name));
+    links.iter().map(|link| of(links[0]).inverse() * of(link)).collect()
+}
+
+#[test]
+fn frames_agree_with_the_vendors() {
+    let given = std::env::var_os("ROBOTC_SHARED_DATA").map(PathBuf::from);
+    let shared = given.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"));
+    if !shared.is_dir() {
+        eprintln!("skipped: shared data not present");
+        return;
+    }
+    for twin in TWINS {
+        let ours = Arc::new(load(&specs().join("robots").join(twin.ours), MeshPolicy::Ignore));
+        let theirs = Arc::new(load(&shared.join(twin.theirs), MeshPolicy::Ignore));
+        for round in 0..8 {
+            let value = |i: usize| 1.4 * ((3 * i + 5 * round) as f64 * 0.7).sin();
+            let values = |pick: fn(&(&'static str, &'static str)) -> &'static str| -> Vec<(&str, f64)> {
+                twin.joints.iter().enumerate().map(|(i, pair)| (pick(pair), value(i))).collect()
+            };
+            let names = |pick: fn(&(&'static str, &'static str)) -> &'static str| -> Vec<&str> {
+                twin.links.iter().map(pick).collect()
+            };
+            let a = poses(&ours, &values(|pair| pair.0), &names(|pair| pair.0));
+            let b = poses(&theirs, &values(|pair| pair.1), &names(|pair| pair.1));
+            for ((a, b), (name, _)) in a.iter().zip(&b).zip(twin.links) {
+                let gap = (a.to_homogeneous() - b.to_homogeneous()).abs().max();
+                assert!(gap < 1e-8, "{}: {name} is {gap} off", twin.ours);
+            }
+        }
+    }
+}
