@@ -21,6 +21,7 @@ pub mod system;
 pub mod task;
 pub mod trajectory;
 pub mod urdf;
+mod xacro;
 mod xml;
 
 pub use diag::{Diagnostic, Diagnostics, Severity, Sources, Span};

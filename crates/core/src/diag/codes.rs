@@ -283,6 +283,38 @@ pub const CODES: &[CodeInfo] = &[
         "A visual or collision element has no shape, an unknown shape, or a size that is not positive.",
     ),
     entry(
+        "R0250",
+        "xacro element used wrongly",
+        "An element of the macro language lacks an attribute, a macro is called without a parameter that has \
+         no default, or with one that it does not have, or a list of parameters cannot be read.",
+    ),
+    entry(
+        "R0251",
+        "xacro expression without value",
+        "An expression in `${...}` or `$(...)` cannot be evaluated: a name is not defined, an operand has the \
+         wrong kind, or the expression is not complete. Expressions are Python's, as far as descriptions use \
+         them.",
+    ),
+    entry(
+        "R0252",
+        "unknown macro or block",
+        "A macro is called, or a block inserted, that nothing has defined up to this place. The file that \
+         defines it may have to be included first.",
+    ),
+    entry(
+        "R0253",
+        "included file not found",
+        "A file named by `<xacro:include>` does not exist, or it is in a package whose folder is not known. \
+         Packages are looked up under `packages` in the robot specification, then in the folders above the \
+         description.",
+    ),
+    entry(
+        "R0254",
+        "xacro expansion without end",
+        "A macro or property uses itself, or the expanded description grows beyond all measure. The expansion \
+         was stopped.",
+    ),
+    entry(
         "R0260",
         "semantic description cannot be used",
         "An element of an SRDF file lacks a name, holds something that is not a joint value, or is defined \

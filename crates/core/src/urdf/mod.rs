@@ -15,12 +15,15 @@ mod read;
 mod resolve;
 mod structure;
 
+pub(crate) use resolve::{normal, package_folder};
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::diag::{Diagnostics, Sources};
 use crate::model::RobotModel;
 use crate::system::System;
+use crate::xacro;
 use crate::xml::{self, Element};
 
 /// What to do about meshes.
@@ -58,6 +61,15 @@ pub fn load(
     options: &LoadOptions,
 ) -> (Option<RobotModel>, Diagnostics) {
     let (root, mut found) = xml::load(system, sources, path);
+    let is_xacro = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xacro"));
+    let root = root.map(|root| {
+        if !is_xacro {
+            return root;
+        }
+        let (expanded, from_xacro) = xacro::expand(system, sources, path, &root, options);
+        found.extend(from_xacro);
+        expanded
+    });
     let model = root.and_then(|root| lower(system, path, &root, options, &mut found));
     let model = model.filter(|_| !found.has_errors());
     (model, found)

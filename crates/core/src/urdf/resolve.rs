@@ -109,7 +109,7 @@ fn siblings(path: &Path) -> impl Iterator<Item = PathBuf> {
 }
 
 /// `path` without `.` and `..`, by its text alone.
-fn normal(path: &Path) -> PathBuf {
+pub(crate) fn normal(path: &Path) -> PathBuf {
     let mut out = PathBuf::new();
     for part in path.components() {
         match part {
