@@ -115,6 +115,12 @@ pub const CODES: &[CodeInfo] = &[
          all kinds.",
     ),
     entry(
+        "R0115",
+        "unknown kind of file",
+        "Neither the ending of the name nor the content says what this file is. Robot specifications end in \
+         `.robot.toml`, task specifications in `.task.toml`.",
+    ),
+    entry(
         "R0201",
         "not well-formed XML",
         "The file breaks a rule of XML: a tag that is not closed, a value without quotes, a stray `<` or `&`. \

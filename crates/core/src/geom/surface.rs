@@ -33,7 +33,8 @@ mod tests {
             shape,
             colour: None,
         };
-        let mesh = surface(&[at(1.0, Shape::Box { size: [0.2; 3] }), at(-1.0, Shape::Sphere { radius: 0.1 })]);
+        let mesh =
+            surface(&[at(1.0, Shape::Box { size: [0.2; 3] }), at(-1.0, Shape::Sphere { radius: 0.1 })]);
         let (low, high) = mesh.bounds().unwrap();
         assert!((high.x - 1.1).abs() < 1e-12 && low.x <= -1.1 && low.x > -1.13, "{low} {high}");
         assert!(mesh.faces.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len()));

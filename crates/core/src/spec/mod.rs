@@ -8,6 +8,7 @@
 
 mod annotations;
 mod arms;
+mod check;
 mod document;
 mod extent;
 mod file;
@@ -27,6 +28,7 @@ mod task;
 mod task_schema;
 mod validate;
 
+pub use check::{Summary, check};
 pub use json_schema::json_schema;
 pub use parameters::{
     KindParameters, Parameter, ParameterDefault, ParameterKind, ParameterTable, ParameterValue, Parameters,

@@ -4,4 +4,5 @@ mod disk;
 mod findings;
 mod mutations;
 mod shipped;
+mod summaries;
 mod values;
