@@ -5,10 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use nalgebra::Point3;
+use robotc_core::Pose;
 use robotc_core::diag::Sources;
-use robotc_core::geom::ConvexPart;
+use robotc_core::geom::{self, ConvexPart};
 use robotc_core::model::{Configuration, Geometry, Kinematics, LinkPoses, RobotModel, Shape};
+use robotc_core::spec::{self, ParameterTable, TaskSpec};
 use robotc_core::system::{ReadError, System};
+use robotc_core::task::Task;
 use robotc_core::urdf::{self, LoadOptions, MeshPolicy};
 
 /// The files of this machine.
@@ -169,6 +172,110 @@ fn collision_shapes_keep_close_to_what_is_seen() {
     }
 }
 
+fn load_task(path: &Path) -> TaskSpec {
+    let mut sources = Sources::default();
+    let (task, found) = spec::load_task(&Disk, &mut sources, path, &ParameterTable::default());
+    assert!(found.is_empty(), "{}", found.to_plain_text(&sources));
+    task.expect("no finding, so a task")
+}
+
+#[test]
+fn specifications_load_without_a_finding() {
+    let robots = files(&specs(), ".robot.toml");
+    assert!(robots.len() >= 3);
+    for path in &robots {
+        let mut sources = Sources::default();
+        let (robot, found) = spec::load_robot(&Disk, &mut sources, path, &ParameterTable::default());
+        assert!(found.is_empty(), "{}", found.to_plain_text(&sources));
+        assert!(robot.is_some());
+    }
+    let tasks = files(&specs(), ".task.toml");
+    assert!(tasks.len() >= 2 * robots.len());
+    tasks.iter().for_each(|path| drop(load_task(path)));
+}
+
+/// Shapes as convex parts with their poses; a mesh as its hull.
+type Parts = Vec<(ConvexPart, Pose)>;
+
+fn parts(shapes: &[Geometry]) -> Parts {
+    let part = |geometry: &Geometry| match &geometry.shape {
+        Shape::Box { size } => geom::box_part((*size).into()),
+        Shape::Cylinder { radius, length } => geom::cylinder_part(*radius, *length),
+        Shape::Capsule { radius, length } => geom::capsule_part(*radius, *length),
+        Shape::Sphere { radius } => geom::sphere_part(*radius),
+        Shape::Mesh { mesh, uri } => ConvexPart::hull_of(&mesh.vertices).expect(uri),
+    };
+    shapes.iter().map(|shape| (part(shape), shape.origin.pose())).collect()
+}
+
+/// The distance of two things, each in its own frame.
+fn distance(a: &Parts, world_from_a: &Pose, b: &Parts, world_from_b: &Pose) -> f64 {
+    let mut least = f64::INFINITY;
+    for (a, a_from_part) in a {
+        for (b, b_from_part) in b {
+            let gap = geom::distance(a, &(world_from_a * a_from_part), b, &(world_from_b * b_from_part));
+            least = least.min(gap.distance);
+        }
+    }
+    least
+}
+
+/// The things of a task: name, parts, pose in the world. Objects first, then obstacles; how many objects.
+fn things(task: &Task) -> (Vec<(&str, Parts, Pose)>, usize) {
+    let objects = task.objects.iter().map(|o| (o.name.as_str(), parts(&o.geometry), o.world_from_object));
+    let obstacles =
+        task.obstacles.iter().map(|o| (o.name.as_str(), parts(&o.geometry), o.world_from_obstacle));
+    (objects.chain(obstacles).collect(), task.objects.len())
+}
+
+#[test]
+fn robots_start_free() {
+    for path in files(&specs(), ".task.toml") {
+        let task = load_task(&path).task;
+        let robot = &task.robot;
+        let mut poses = LinkPoses::default();
+        Kinematics::new(Arc::clone(&robot.model)).link_poses(&task.start, &mut poses);
+        let links: Vec<_> =
+            robot.model.links().enumerate().map(|(link, l)| (link, &l.name, parts(&l.collisions))).collect();
+        let (things, _) = things(&task);
+        for (i, (a, name, parts)) in links.iter().enumerate() {
+            for (b, other, other_parts) in &links[i + 1..] {
+                if !robot.ignored_pairs.contains(&(*a, *b)) {
+                    let gap = distance(parts, poses.root_from(*a), other_parts, poses.root_from(*b));
+                    assert!(gap > 0.001, "{}: {name} and {other}: {gap} m", path.display());
+                }
+            }
+            let world_from_link = task.world_from_robot * poses.root_from(*a);
+            for (thing, thing_parts, world_from_thing) in &things {
+                let gap = distance(parts, &world_from_link, thing_parts, world_from_thing);
+                assert!(gap > 0.004, "{}: {name} and {thing}: {gap} m", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn objects_stand_on_something_and_apart() {
+    for path in files(&specs(), ".task.toml") {
+        let task = load_task(&path).task;
+        let (things, objects) = things(&task);
+        for (i, (name, parts, pose)) in things[..objects].iter().enumerate() {
+            let gap = |height| {
+                let lifted = Pose::translation(0.0, 0.0, height) * pose;
+                let to_others =
+                    things[objects..].iter().map(|(_, other, at)| distance(parts, &lifted, other, at));
+                to_others.fold(f64::INFINITY, f64::min)
+            };
+            assert!(gap(0.0) < 1e-5, "{}: {name} hangs {} m in the air", path.display(), gap(0.0));
+            assert!((gap(0.001) - 0.001).abs() < 1e-5, "{}: {name} sticks in something", path.display());
+            for (other, other_parts, other_pose) in &things[i + 1..objects] {
+                let gap = distance(parts, pose, other_parts, other_pose);
+                assert!(gap > 0.03, "{}: {name} and {other}: {gap} m", path.display());
+            }
+        }
+    }
+}
+
 /// A shipped robot, a real description, links and joints of both that are the same.
 struct Twin {
     ours: &'static str,
@@ -259,7 +366,7 @@ const TWINS: &[Twin] = &[
 ];
 
 /// Poses of named links, relative to the first of them, with named joints at given values.
-fn poses(model: &Arc<RobotModel>, joints: &[(&str, f64)], links: &[&str]) -> Vec<robotc_core::Pose> {
+fn poses(model: &Arc<RobotModel>, joints: &[(&str, f64)], links: &[&str]) -> Vec<Pose> {
     let mut q = Configuration::neutral(model);
     for (joint, value) in joints {
         q.set(&[model.dof_named(joint).expect(joint)], &[*value]);
