@@ -12,6 +12,10 @@ pub trait Constraint {
     /// Whether `q` satisfies the constraint.
     fn holds(&self, q: &[f64]) -> bool;
 
+    /// Size of the straight motion by `difference`, such that if its ends satisfy the constraint and the size is no more
+    /// than one, the states in between are as good. A norm.
+    fn size(&self, difference: &[f64]) -> f64;
+
     /// Moves `q` to a nearby state that satisfies the constraint; `false` when none was found, and `q` is then lost.
     fn project(&self, q: &mut [f64]) -> bool;
 }
@@ -27,6 +31,9 @@ pub struct Upright<'a> {
     pub tilt: f64,
 }
 
+/// This fraction of the allowed tilt is kept in reserve for the states between those that are looked at.
+const RESERVE: f64 = 0.1;
+
 /// Projection aims at this fraction of the allowed tilt, so that edges between projected states hold too.
 const AIM: f64 = 0.5;
 
@@ -39,6 +46,10 @@ impl Upright<'_> {
         (self.arm.world_from_tool(q) * self.tool_from_object).rotation * Vector3::z()
     }
 
+    fn limit(&self) -> f64 {
+        (1.0 - RESERVE) * self.tilt
+    }
+
     /// Angle between the object's z axis and the world's at `q`, radians.
     pub fn tilt_at(&self, q: &[f64]) -> f64 {
         let axis = self.axis_in_world(q);
@@ -48,7 +59,12 @@ impl Upright<'_> {
 
 impl Constraint for Upright<'_> {
     fn holds(&self, q: &[f64]) -> bool {
-        self.tilt_at(q) <= self.tilt
+        self.tilt_at(q) <= self.limit()
+    }
+
+    fn size(&self, difference: &[f64]) -> f64 {
+        // No joint turns the object faster than itself, and a state is within half a motion of one of its ends.
+        0.5 * difference.iter().map(|d| d.abs()).sum::<f64>() / (RESERVE * self.tilt)
     }
 
     fn project(&self, q: &mut [f64]) -> bool {
@@ -56,7 +72,7 @@ impl Constraint for Upright<'_> {
             let axis = self.axis_in_world(q);
             let sine = axis.x.hypot(axis.y);
             let tilt = sine.atan2(axis.z);
-            if tilt <= self.tilt {
+            if tilt <= self.limit() {
                 return true;
             }
             // Turn about the horizontal axis that takes z back up; upside down, any will do.

@@ -9,7 +9,9 @@ pub mod constraint;
 pub mod edge;
 pub mod goal;
 pub mod grasp;
+pub mod manipulation;
 pub mod rrt;
+pub mod scene;
 pub mod smooth;
 pub mod space;
 #[cfg(test)]

@@ -21,7 +21,7 @@ const TOOL: f64 = 0.12;
 pub(crate) const OPEN: f64 = 0.05;
 
 /// A bent configuration with the tool pointing forward and down (without the rail).
-pub(crate) const REST: [f64; 6] = [0.0, -0.6, 1.4, 0.0, 0.8, 0.0];
+pub(crate) const REST: [f64; 6] = [0.0, -1.6, 1.9, 0.0, 1.2, 0.0];
 
 fn shape(xyz: [f64; 3], size: [f64; 3]) -> Vec<Geometry> {
     let origin = Origin { xyz, rpy: [0.0; 3] };

@@ -416,6 +416,9 @@ mod tests {
             fn holds(&self, q: &[f64]) -> bool {
                 ((q[0] - 5.0).hypot(q[1] - 5.0) - 4.0).abs() < 1e-9
             }
+            fn size(&self, _: &[f64]) -> f64 {
+                0.0
+            }
             fn project(&self, q: &mut [f64]) -> bool {
                 let (x, y) = (q[0] - 5.0, q[1] - 5.0);
                 let r = x.hypot(y);

@@ -1,0 +1,24 @@
+//! Pick and place: which grasp, which destination, and the motions in between.
+//!
+//! A goal sampler walks through the grasps of the object and hands out only those for which every straight motion
+//! (approach, lift, lowering, retreat) has been checked on one branch of inverse kinematics; the searches for the free
+//! motions in between draw their goals from it (thesis sections 3.1 and 3.2).
+
+mod certify;
+mod destinations;
+mod picks;
+mod placings;
+mod plan;
+mod problem;
+mod rejections;
+mod sequence;
+mod stretch;
+#[cfg(test)]
+mod tests;
+
+pub use certify::{Uncertified, certify};
+pub use destinations::destination_poses;
+pub use plan::{Choice, Event, GoalFailure, Held, Plan, Segment, SegmentKind, SkippedGoal, Stage};
+pub use problem::{Manipulation, ManipulationOptions};
+pub use rejections::{Filter, Rejections};
+pub use sequence::{Observer, PlanFailure, pick_and_place};

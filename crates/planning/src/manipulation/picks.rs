@@ -1,0 +1,286 @@
+//! Grasps that can be reached, closed, lifted and put down: thesis algorithms 3.4, 3.5 and 3.6 as one lazy sampler.
+
+use nalgebra::Vector3;
+use robotc_core::ik::IkSolutions;
+use robotc_core::rng::Rng;
+use robotc_core::{Configuration, LinkPoses, Pose};
+
+use super::placings::{Destinations, Placing, PlacingSampler, Placings, free_values};
+use super::problem::GoalContext;
+use super::rejections::{Filter, Rejections};
+use super::stretch::{Reason, back_off, fine_checker, fingers_move, raise, state_is_free};
+use crate::budget::{Budget, Interrupt};
+use crate::constraint::Upright;
+use crate::goal::{GoalDraw, GoalSampler};
+use crate::grasp::{Grasp, GraspSet};
+use crate::scene::{Rules, Scene};
+
+/// A grasp with all its straight motions.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Pick {
+    /// Position in the grasp set.
+    pub(super) grasp: usize,
+    /// Arm configurations from where free motion ends to the grasp.
+    pub(super) approach: Vec<Vec<f64>>,
+    /// From the grasp upwards.
+    pub(super) lift: Vec<Vec<f64>>,
+    /// One way to put the object down.
+    pub(super) placing: Placing,
+}
+
+/// The state of a search for picks of one object.
+pub(super) struct PickSampler<'a, 's> {
+    pub(super) cx: GoalContext<'a>,
+    pub(super) scene: &'s Scene,
+    pub(super) set: &'s GraspSet,
+    pub(super) destinations: &'s mut Destinations,
+    /// The robot before the pick.
+    pub(super) q: Configuration,
+    pub(super) tilt: Option<f64>,
+    pub(super) rng: Rng,
+    /// Grasps still in question, by rank.
+    pub(super) alive: Vec<usize>,
+    /// Position in `alive`, and round of free values.
+    pub(super) cursor: usize,
+    pub(super) round: usize,
+    /// Branches of the present grasp still to be tried, the next one last.
+    pub(super) branches: Vec<(usize, Vec<f64>)>,
+    pub(super) found: Vec<Pick>,
+    /// How many of `found` the present search knows.
+    pub(super) handed_out: usize,
+    pub(super) rejections: Rejections,
+}
+
+impl<'a, 's> PickSampler<'a, 's> {
+    pub(super) fn new(
+        cx: GoalContext<'a>,
+        scene: &'s Scene,
+        set: &'s GraspSet,
+        destinations: &'s mut Destinations,
+        q: &Configuration,
+        tilt: Option<f64>,
+        rng: Rng,
+    ) -> Self {
+        Self {
+            cx,
+            scene,
+            set,
+            destinations,
+            q: q.clone(),
+            tilt,
+            rng,
+            alive: (0..set.grasps.len()).collect(),
+            cursor: 0,
+            round: 0,
+            branches: Vec::new(),
+            found: Vec::new(),
+            handed_out: 0,
+            rejections: Rejections::default(),
+        }
+    }
+
+    /// Takes a grasp out of the search; the other picks found are handed out again.
+    pub(super) fn drop_grasp(&mut self, grasp: usize) {
+        self.found.retain(|pick| pick.grasp != grasp);
+        self.handed_out = 0;
+        self.branches.retain(|(g, _)| *g != grasp);
+        if let Some(position) = self.alive.iter().position(|&g| g == grasp) {
+            self.alive.remove(position);
+            if position < self.cursor {
+                self.cursor -= 1;
+            }
+        }
+    }
+
+    /// The next branch to try; `Ok(None)` when a grasp was rejected, `Err` when all are through.
+    fn next_branch(&mut self) -> Result<Option<(usize, Vec<f64>)>, ()> {
+        if let Some(branch) = self.branches.pop() {
+            return Ok(Some(branch));
+        }
+        let arm = self.cx.problem.arm;
+        let rounds = if arm.free_variables().is_empty() { 1 } else { self.cx.options.free_samples as usize };
+        if self.cursor >= self.alive.len() {
+            self.round += 1;
+            self.cursor = 0;
+        }
+        if self.round >= rounds || self.alive.is_empty() {
+            return Err(());
+        }
+        let index = self.alive[self.cursor];
+        let grasp = &self.set.grasps[index];
+        let world_from_tool = self.scene.world_from_body(self.cx.object) * grasp.object_from_tool;
+        if self.round == 0 {
+            if let Err((filter, reason)) = self.hand_check(grasp, &world_from_tool) {
+                self.rejections.add_because(filter, reason);
+                self.alive.remove(self.cursor);
+                return Ok(None);
+            }
+        }
+        self.cursor += 1;
+        let near = self.cx.arm_values(&self.q);
+        let free = free_values(&self.cx, self.round, &near, &mut self.rng);
+        let mut scratch = IkSolutions::new();
+        let (solutions, outside) = arm.inverse(&world_from_tool, &free, &near, &mut scratch);
+        if solutions.is_empty() {
+            self.rejections.add(if outside > 0 { Filter::GraspLimits } else { Filter::GraspOutOfReach });
+            return Ok(None);
+        }
+        let best = solutions.into_iter().take(self.cx.options.branches);
+        self.branches = best.map(|q| (index, q)).rev().collect();
+        Ok(None)
+    }
+
+    fn hand_check(&self, grasp: &Grasp, world_from_tool: &Pose) -> Result<(), (Filter, Reason)> {
+        hand_is_free(&self.cx, self.scene, grasp, world_from_tool).map_err(|r| (Filter::HandAtGrasp, r))?;
+        let rules = self.cx.touching();
+        hand_at(&self.cx, self.scene, &grasp.closed, world_from_tool, &rules)
+            .map_err(|r| (Filter::ClosedHand, r))
+    }
+
+    /// All straight motions of one branch.
+    fn check(&mut self, index: usize, at: &[f64]) -> Result<Pick, (Filter, Option<Reason>)> {
+        let cx = self.cx;
+        let grasp = &self.set.grasps[index];
+        let because = |filter| move |reason| (filter, Some(reason));
+        let open = cx.with_fingers(&self.q, &cx.gripper().preshapes[grasp.preshape].values);
+        state_is_free(&mut fine_checker(&cx, self.scene, &open, cx.touching()), at)
+            .map_err(because(Filter::ArmAtGrasp))?;
+        let world_from_object = self.scene.world_from_body(cx.object);
+        let direction: Vector3<f64> = -(world_from_object.rotation * grasp.approach_in_object.into_inner());
+        let mut approach =
+            back_off(&cx, self.scene, &open, at, &direction).map_err(because(Filter::Approach))?;
+        approach.reverse();
+        // The arm comes with its fingers as they are now, and opens them before the approach.
+        let far = &approach[0];
+        let now = self.q.select(&cx.gripper().dofs);
+        let preshape = &cx.gripper().preshapes[grasp.preshape].values;
+        state_is_free(&mut fine_checker(&cx, self.scene, &self.q, cx.free(None)), far)
+            .and_then(|()| fingers_move(&cx, self.scene, &self.q, far, &now, preshape, cx.free(None)))
+            .map_err(because(Filter::Approach))?;
+        fingers_move(&cx, self.scene, &self.q, at, preshape, &grasp.closed, cx.touching())
+            .map_err(because(Filter::ClosedHand))?;
+
+        let closed = cx.with_fingers(&self.q, &grasp.closed);
+        let rules = cx.standing(cx.grip(&grasp.object_from_tool));
+        state_is_free(&mut fine_checker(&cx, self.scene, &closed, rules.clone()), at)
+            .map_err(because(Filter::Lift))?;
+        let lift = raise(&cx, self.scene, &closed, at, &rules).map_err(because(Filter::Lift))?;
+
+        let upright = self.tilt.map(|tilt| upright(&cx, grasp, tilt));
+        let mut placings = placings(&cx, self.scene, grasp, &lift[lift.len() - 1], &self.q);
+        placings.constraint = upright.as_ref().map(|u| u as _);
+        let mut sampler = PlacingSampler {
+            placings: &mut placings,
+            destinations: &mut *self.destinations,
+            rejections: &mut self.rejections,
+            rng: &mut self.rng,
+            handed_out: 0,
+        };
+        for _ in 0..cx.options.placings {
+            match sampler.try_next() {
+                Some(true) => break,
+                Some(false) => {}
+                None => break,
+            }
+        }
+        match placings.found.pop() {
+            Some(placing) => Ok(Pick { grasp: index, approach, lift, placing }),
+            None => Err((Filter::Destination, None)),
+        }
+    }
+}
+
+impl GoalSampler for PickSampler<'_, '_> {
+    fn draw(&mut self, budget: &Budget<'_>) -> Result<GoalDraw, Interrupt> {
+        budget.check()?;
+        if self.handed_out == self.found.len() {
+            match self.next_branch() {
+                Err(()) => return Ok(GoalDraw::Exhausted),
+                Ok(None) => return Ok(GoalDraw::Pending),
+                Ok(Some((index, at))) => match self.check(index, &at) {
+                    Ok(pick) => self.found.push(pick),
+                    Err((filter, reason)) => {
+                        match reason {
+                            Some(reason) => self.rejections.add_because(filter, reason),
+                            None => self.rejections.add(filter),
+                        }
+                        return Ok(GoalDraw::Pending);
+                    }
+                },
+            }
+        }
+        let goal = self.found[self.handed_out].approach[0].clone();
+        self.handed_out += 1;
+        Ok(GoalDraw::Goal(goal))
+    }
+}
+
+/// A search for placings of the object held by `grasp`, with the arm coming from `near`.
+pub(super) fn placings<'a, 's>(
+    cx: &GoalContext<'a>,
+    scene: &'s Scene,
+    grasp: &'s Grasp,
+    near: &[f64],
+    q: &Configuration,
+) -> Placings<'a, 's> {
+    Placings {
+        cx: *cx,
+        scene,
+        grasp,
+        near: near.to_vec(),
+        q: q.clone(),
+        constraint: None,
+        next: 0,
+        branches: Vec::new(),
+        found: Vec::new(),
+    }
+}
+
+/// The constraint to keep the object within `tilt` of upright while held by `grasp`.
+pub(super) fn upright<'a>(cx: &GoalContext<'a>, grasp: &Grasp, tilt: f64) -> Upright<'a> {
+    Upright { arm: cx.problem.arm, tool_from_object: grasp.object_from_tool.inverse(), tilt }
+}
+
+/// Whether the open gripper alone, backed off along the approach by the contact distance and by the whole approach, and
+/// at the grasp itself (where it may touch the object), is free (thesis algorithm 3.4).
+pub(super) fn hand_is_free(
+    cx: &GoalContext<'_>,
+    scene: &Scene,
+    grasp: &Grasp,
+    world_from_tool: &Pose,
+) -> Result<(), Reason> {
+    let open = &cx.gripper().preshapes[grasp.preshape].values;
+    hand_at(cx, scene, open, world_from_tool, &cx.touching())?;
+    let clear = Rules { target: None, ..cx.touching() };
+    let options = cx.options;
+    let object_from_tool = &grasp.object_from_tool;
+    let approach_in_tool = object_from_tool.rotation.inverse() * grasp.approach_in_object.into_inner();
+    let spread = options.approach - options.contact;
+    for fraction in [0.0, 0.5, 1.0] {
+        let mut backed_off = *world_from_tool;
+        let distance = options.contact + fraction * spread;
+        backed_off.translation.vector -= world_from_tool.rotation * approach_in_tool * distance;
+        hand_at(cx, scene, open, &backed_off, &clear)?;
+    }
+    Ok(())
+}
+
+/// Whether the gripper alone is free with its tool frame at `world_from_tool` and its fingers at `fingers`.
+fn hand_at(
+    cx: &GoalContext<'_>,
+    scene: &Scene,
+    fingers: &[f64],
+    world_from_tool: &Pose,
+    rules: &Rules,
+) -> Result<(), Reason> {
+    let gripper = cx.gripper();
+    let kinematics = cx.problem.kinematics;
+    let q = cx.with_fingers(cx.problem.start, fingers);
+    let mut poses = LinkPoses::default();
+    kinematics.link_poses(&q, &mut poses);
+    // Carry the whole robot along, so that its palm is where the tool wants it; only the gripper is looked at.
+    let world_from_palm = world_from_tool * gripper.palm_from_tool.inverse();
+    let world_from_root = world_from_palm * poses.root_from(gripper.palm).inverse();
+    let free = scene.against_bodies(&world_from_root, &poses, cx.gripper_links, rules);
+    free.map(|_| ()).map_err(|touch| scene.describe(touch.into()).unwrap_or_default())
+}

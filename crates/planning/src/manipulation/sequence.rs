@@ -1,0 +1,461 @@
+//! The whole task: goal after goal, and for each the free motions between its straight ones.
+
+use std::fmt;
+
+use robotc_core::task::Goal;
+use robotc_core::{Configuration, Pose, Seed, Trajectory};
+use thiserror::Error;
+
+use super::destinations::destination_poses;
+use super::picks::{Pick, PickSampler, placings, upright};
+use super::placings::{Destinations, Placing, PlacingSampler};
+use super::plan::{Choice, Event, GoalFailure, Held, Plan, Segment, SegmentKind, SkippedGoal, Stage};
+use super::problem::{
+    GoalContext, Manipulation, ManipulationOptions, finger_space, gripper_links, motion_limits,
+};
+use super::rejections::{Filter, Rejections};
+use super::stretch::fine_checker;
+use crate::budget::{Budget, Interrupt};
+use crate::constraint::Constraint;
+use crate::edge::{EdgeChecker, Obstruction};
+use crate::goal::GoalSampler;
+use crate::grasp::Grasp;
+use crate::rrt::{RrtConnect, RrtFailure, RrtFailureReason, RrtSolution, RrtStatistics};
+use crate::scene::{RobotChecker, Rules, Scene};
+use crate::smooth::smooth;
+use crate::timing::{MotionLimits, time_path};
+
+/// Told what the planner does, for progress, timing and display. All methods do nothing unless overridden.
+pub trait Observer {
+    /// Planning for a goal of the task begins.
+    fn goal(&mut self, _goal: usize) {}
+
+    /// A search for a free motion ended; its forests are in the joint space of the arm.
+    fn searched(&mut self, _goal: usize, _kind: SegmentKind, _search: &RrtConnect, _done: &RrtStatistics) {}
+
+    /// A segment of the plan is final.
+    fn segment(&mut self, _segment: &Segment) {}
+}
+
+impl Observer for () {}
+
+/// Why there is no plan at all.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum PlanFailure {
+    /// The arm has no gripper.
+    #[error("arm {0} has no gripper")]
+    NoGripper(String),
+    /// The budget ended before the first goal was reached.
+    #[error("{0} before a plan was found")]
+    Interrupted(Interrupt),
+    /// No goal can be reached.
+    #[error("{}", Reasons(.0))]
+    NoGoal(Vec<SkippedGoal>),
+}
+
+struct Reasons<'a>(&'a [SkippedGoal]);
+
+impl fmt::Display for Reasons<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, skipped) in self.0.iter().enumerate() {
+            write!(f, "{}{}", if i == 0 { "" } else { "; " }, skipped.reason)?;
+        }
+        Ok(())
+    }
+}
+
+/// A goal's plan and the situation after it.
+struct Reached {
+    segments: Vec<Segment>,
+    choice: Choice,
+    q: Configuration,
+}
+
+/// What kept a goal from being reached.
+enum Miss {
+    Interrupted(Interrupt),
+    Failed(Box<GoalFailure>),
+}
+
+/// Plans all goals of the task, in order; one that fails is tried again after the others, when they have made room.
+///
+/// The plan holds what could be reached, and says what could not and why; it is an error when that is everything. The
+/// result depends on inputs and seed alone unless the budget ends it.
+pub fn pick_and_place(
+    problem: &Manipulation<'_>,
+    options: &ManipulationOptions,
+    budget: &Budget<'_>,
+    seed: Seed,
+    observer: &mut dyn Observer,
+) -> Result<Plan, PlanFailure> {
+    let robot = &*problem.task.robot;
+    let arm = &robot.arms[problem.task.arm];
+    let gripper = arm.gripper.ok_or_else(|| PlanFailure::NoGripper(arm.name.clone()))?;
+    let links = gripper_links(robot, gripper);
+    let fingers = finger_space(robot, gripper);
+
+    let mut scene = problem.scene.clone();
+    let mut q = problem.start.clone();
+    let mut plan = Plan::default();
+    let mut pending: Vec<usize> = (0..problem.task.goals.len()).collect();
+    for round in 0.. {
+        let mut missed: Vec<SkippedGoal> = Vec::new();
+        let before = pending.len();
+        for &number in &pending {
+            observer.goal(number);
+            let Goal::Place { object, .. } = problem.task.goals[number];
+            let cx = GoalContext {
+                problem: *problem,
+                options,
+                number,
+                object,
+                gripper,
+                gripper_links: &links,
+                finger_space: &fingers,
+            };
+            let seed = seed.split("goal").at(number as u64).at(round);
+            match plan_goal(&cx, &scene, &q, budget, seed, observer) {
+                Ok(reached) => {
+                    reached.segments.iter().for_each(|s| observer.segment(s));
+                    scene.place(object, reached.choice.world_from_object);
+                    q = reached.q;
+                    plan.segments.extend(reached.segments);
+                    plan.choices.push(reached.choice);
+                }
+                Err(Miss::Failed(reason)) => missed.push(SkippedGoal { goal: number, reason: *reason }),
+                Err(Miss::Interrupted(interrupt)) if plan.choices.is_empty() => {
+                    return Err(PlanFailure::Interrupted(interrupt));
+                }
+                Err(Miss::Interrupted(interrupt)) => missed.push(SkippedGoal {
+                    goal: number,
+                    reason: GoalFailure {
+                        object: cx.object_name().to_owned(),
+                        stage: Stage::Grasps,
+                        message: interrupt.to_string(),
+                        rejections: Rejections::default(),
+                    },
+                }),
+            }
+        }
+        pending = missed.iter().map(|m| m.goal).collect();
+        if pending.is_empty() || pending.len() == before {
+            plan.skipped = missed;
+            break;
+        }
+    }
+    if plan.choices.is_empty() && !plan.skipped.is_empty() {
+        return Err(PlanFailure::NoGoal(plan.skipped));
+    }
+    Ok(plan)
+}
+
+/// Plans one goal from configuration `q`.
+fn plan_goal(
+    cx: &GoalContext<'_>,
+    scene: &Scene,
+    q: &Configuration,
+    budget: &Budget<'_>,
+    seed: Seed,
+    observer: &mut dyn Observer,
+) -> Result<Reached, Miss> {
+    let Goal::Place { destination, keep_upright, .. } = cx.goal();
+    let set = cx.problem.grasps[cx.object];
+    let poses = destination_poses(destination, cx.options.destinations, &mut seed.split("destination").rng());
+    let mut destinations = Destinations::new(poses);
+    let mut sampler =
+        PickSampler::new(*cx, scene, set, &mut destinations, q, *keep_upright, seed.split("grasps").rng());
+    let mut rng = seed.split("search").rng();
+    let start = cx.arm_values(q);
+    let fail = |stage, message: String, rejections: &Rejections| {
+        let object = cx.object_name().to_owned();
+        Err(Miss::Failed(Box::new(GoalFailure { object, stage, message, rejections: rejections.clone() })))
+    };
+    let mut carry_failures = Rejections::default();
+    let mut last = None;
+    for _ in 0..cx.options.attempts {
+        let rules = start_rules(cx, scene, q, &start);
+        let mut reach = FreeMotion { cx, scene, q, rules, constraint: None, kind: SegmentKind::Reach };
+        let solution = match reach.search(&start, &mut sampler, budget, &mut rng, observer) {
+            Ok(solution) => solution,
+            Err(failure) => {
+                interrupted(&failure)?;
+                sampler.rejections.merge(&carry_failures);
+                return match (failure.reason, last) {
+                    (RrtFailureReason::NoGoal, Some(message)) => {
+                        fail(Stage::Carry, message, &sampler.rejections)
+                    }
+                    (RrtFailureReason::NoGoal, None) => {
+                        let message = format!("none of {} passes all tests", set.grasps.len());
+                        fail(Stage::Grasps, message, &sampler.rejections)
+                    }
+                    _ => fail(Stage::Reach, reach.explain(&failure), &sampler.rejections),
+                };
+            }
+        };
+        let pick = sampler.found[solution.goal].clone();
+        let grasp = &set.grasps[pick.grasp];
+        match plan_carry(
+            cx,
+            scene,
+            q,
+            grasp,
+            &pick,
+            *keep_upright,
+            sampler.destinations,
+            budget,
+            &mut rng,
+            observer,
+        ) {
+            Ok((carry_path, placing)) => {
+                let reach_path = reach.smoothed(solution.path, budget, &mut rng);
+                let rejections = sampler.rejections.clone();
+                let motions = Motions { reach: reach_path, pick, carry: carry_path, placing };
+                return Ok(motions.into_segments(cx, scene, q, grasp, rejections));
+            }
+            Err(Miss::Failed(failure)) => {
+                carry_failures.merge(&failure.rejections);
+                carry_failures.add_because(Filter::Path, failure.message.clone());
+                last = Some(failure.message);
+                sampler.drop_grasp(pick.grasp);
+            }
+            Err(interrupted) => return Err(interrupted),
+        }
+    }
+    sampler.rejections.merge(&carry_failures);
+    fail(Stage::Carry, last.unwrap_or_default(), &sampler.rejections)
+}
+
+/// Free motion with the object from the end of the lift to the start of a lowering, smoothed.
+fn plan_carry(
+    cx: &GoalContext<'_>,
+    scene: &Scene,
+    q: &Configuration,
+    grasp: &Grasp,
+    pick: &Pick,
+    keep_upright: Option<f64>,
+    destinations: &mut Destinations,
+    budget: &Budget<'_>,
+    rng: &mut robotc_core::rng::Rng,
+    observer: &mut dyn Observer,
+) -> Result<(Vec<Vec<f64>>, Placing), Miss> {
+    let from = &pick.lift[pick.lift.len() - 1];
+    let constraint = keep_upright.map(|tilt| upright(cx, grasp, tilt));
+    let constraint = constraint.as_ref().map(|u| u as &dyn Constraint);
+    let closed = cx.with_fingers(q, &grasp.closed);
+    let mut placings = placings(cx, scene, grasp, from, q);
+    placings.constraint = constraint;
+    placings.found.push(pick.placing.clone());
+    let mut rejections = Rejections::default();
+    let mut placing_rng = rng.clone();
+    let mut sampler = PlacingSampler {
+        placings: &mut placings,
+        destinations,
+        rejections: &mut rejections,
+        rng: &mut placing_rng,
+        handed_out: 0,
+    };
+    let rules = cx.free(Some(cx.grip(&grasp.object_from_tool)));
+    let mut carry = FreeMotion { cx, scene, q: &closed, rules, constraint, kind: SegmentKind::Carry };
+    match carry.search(from, &mut sampler, budget, rng, observer) {
+        Ok(solution) => {
+            let path = carry.smoothed(solution.path, budget, rng);
+            Ok((path, placings.found.swap_remove(solution.goal)))
+        }
+        Err(failure) => {
+            interrupted(&failure)?;
+            Err(Miss::Failed(Box::new(GoalFailure {
+                object: cx.object_name().to_owned(),
+                stage: Stage::Carry,
+                message: carry.explain(&failure),
+                rejections,
+            })))
+        }
+    }
+}
+
+fn interrupted(failure: &RrtFailure) -> Result<(), Miss> {
+    match failure.reason {
+        RrtFailureReason::Interrupted(interrupt) => Err(Miss::Interrupted(interrupt)),
+        _ => Ok(()),
+    }
+}
+
+/// Rules of free motion; without a margin when the robot already stands too near to something to keep it.
+fn start_rules(cx: &GoalContext<'_>, scene: &Scene, q: &Configuration, start: &[f64]) -> Rules {
+    let rules = cx.free(None);
+    let keeps = fine_checker(cx, scene, q, rules.clone()).state(start);
+    match keeps {
+        Err(Obstruction::Contact(_)) => Rules { margin: 0.0, ..rules },
+        _ => rules,
+    }
+}
+
+/// A search for a free motion of the arm.
+struct FreeMotion<'c, 'a> {
+    cx: &'c GoalContext<'a>,
+    scene: &'c Scene,
+    q: &'c Configuration,
+    rules: Rules,
+    constraint: Option<&'c dyn Constraint>,
+    kind: SegmentKind,
+}
+
+impl<'c> FreeMotion<'c, '_> {
+    fn checker(&self) -> RobotChecker<'c> {
+        let arm = self.cx.problem.arm;
+        let resolution = self.cx.options.resolution;
+        RobotChecker::new(self.scene, arm.space(), arm.dofs(), self.q, self.rules.clone(), resolution)
+            .with_constraint(self.constraint)
+    }
+
+    fn search(
+        &mut self,
+        from: &[f64],
+        goals: &mut dyn GoalSampler,
+        budget: &Budget<'_>,
+        rng: &mut robotc_core::rng::Rng,
+        observer: &mut dyn Observer,
+    ) -> Result<RrtSolution, RrtFailure> {
+        let mut search = RrtConnect::new(from);
+        let options = &self.cx.options.rrt;
+        let outcome = search.run(&mut self.checker(), self.constraint, goals, options, budget, rng);
+        let statistics = match &outcome {
+            Ok(solution) => &solution.statistics,
+            Err(failure) => &failure.statistics,
+        };
+        observer.searched(self.cx.number, self.kind, &search, statistics);
+        outcome
+    }
+
+    fn smoothed(
+        &self,
+        path: Vec<Vec<f64>>,
+        budget: &Budget<'_>,
+        rng: &mut robotc_core::rng::Rng,
+    ) -> Vec<Vec<f64>> {
+        smooth(&mut self.checker(), path, &self.cx.options.smoothers, budget, rng)
+    }
+
+    /// The failure with the obstructions that stopped most edges.
+    fn explain(&self, failure: &RrtFailure) -> String {
+        let checker = self.checker();
+        if let RrtFailureReason::Start(by) = failure.reason {
+            return format!("the start is not free: {}", checker.describe(by));
+        }
+        let mut blocked: Vec<(Obstruction, u32)> =
+            failure.statistics.blocked.iter().map(|(&by, &n)| (by, n)).collect();
+        blocked.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));
+        let named: Vec<String> =
+            blocked.iter().take(3).map(|(by, n)| format!("{} {n} times", checker.describe(*by))).collect();
+        if named.is_empty() { failure.to_string() } else { format!("{failure}; {}", named.join(", ")) }
+    }
+}
+
+/// All paths of one goal.
+struct Motions {
+    reach: Vec<Vec<f64>>,
+    pick: Pick,
+    carry: Vec<Vec<f64>>,
+    placing: Placing,
+}
+
+impl Motions {
+    fn into_segments(
+        self,
+        cx: &GoalContext<'_>,
+        scene: &Scene,
+        q: &Configuration,
+        grasp: &Grasp,
+        rejections: Rejections,
+    ) -> Reached {
+        let Motions { reach, pick, carry, placing } = self;
+        let robot = cx.robot();
+        let gripper = cx.gripper();
+        let grip = cx.grip(&grasp.object_from_tool);
+        let held = Held { object: cx.object, link: grip.link, link_from_object: grip.link_from_body };
+        let now = q.select(&gripper.dofs);
+        let preshape = &gripper.preshapes[grasp.preshape].values;
+        let world_from_object: Pose = placing.world_from_object;
+        let there = scene.with_body_at(cx.object, world_from_object);
+        let finger_limits = motion_limits(robot, &gripper.dofs);
+        let mut made = Maker { cx, q: q.clone(), finger_limits, segments: Vec::new() };
+
+        made.arm(SegmentKind::Reach, &reach, scene, cx.free(None), None);
+        if now != *preshape {
+            made.fingers(SegmentKind::Preshape, &now, preshape, scene, None);
+        }
+        made.arm(SegmentKind::Approach, &pick.approach, scene, cx.touching(), None);
+        made.fingers(SegmentKind::Grasp, preshape, &grasp.closed, scene, None);
+        made.event(Event::Attach(held.clone()));
+        let standing = cx.standing(grip.clone());
+        let carrying = cx.free(Some(grip));
+        made.arm(SegmentKind::Lift, &pick.lift, scene, standing.clone(), Some(&held));
+        made.arm(SegmentKind::Carry, &carry, scene, carrying, Some(&held));
+        made.arm(SegmentKind::Lower, &placing.lower, scene, standing, Some(&held));
+        made.event(Event::Detach { object: cx.object, world_from_object });
+        made.fingers(SegmentKind::Release, &grasp.closed, preshape, &there, None);
+        made.arm(SegmentKind::Retreat, &placing.retreat, &there, cx.touching(), None);
+
+        let choice =
+            Choice { goal: cx.number, object: cx.object, grasp: pick.grasp, world_from_object, rejections };
+        Reached { segments: made.segments, choice, q: made.q }
+    }
+}
+
+/// Turns paths into segments, one after the other.
+struct Maker<'c, 'a> {
+    cx: &'c GoalContext<'a>,
+    /// Where the robot is after the segments so far.
+    q: Configuration,
+    finger_limits: MotionLimits,
+    segments: Vec<Segment>,
+}
+
+impl Maker<'_, '_> {
+    fn arm(
+        &mut self,
+        kind: SegmentKind,
+        path: &[Vec<f64>],
+        scene: &Scene,
+        rules: Rules,
+        held: Option<&Held>,
+    ) {
+        let arm = self.cx.problem.arm;
+        // Continuous joints go on from where they are, not from an alias.
+        let mut path = path.to_vec();
+        path[0] = self.q.select(arm.dofs());
+        let resolution = self.cx.options.fine_resolution;
+        let mut checker = RobotChecker::new(scene, arm.space(), arm.dofs(), &self.q, rules, resolution);
+        let timed = time_path(&mut checker, &path, arm.limits(), &self.cx.options.timing);
+        let trajectory = timed
+            .into_trajectory(arm.dofs().to_vec(), arm.names().to_vec())
+            .expect("times of a timed path grow");
+        self.push(kind, trajectory, held);
+    }
+
+    fn fingers(&mut self, kind: SegmentKind, from: &[f64], to: &[f64], scene: &Scene, held: Option<&Held>) {
+        let cx = self.cx;
+        let dofs = &cx.gripper().dofs;
+        let rules = cx.touching();
+        let resolution = cx.options.fine_resolution;
+        let mut checker = RobotChecker::new(scene, cx.finger_space, dofs, &self.q, rules, resolution);
+        let path = [from.to_vec(), to.to_vec()];
+        let timed = time_path(&mut checker, &path, &self.finger_limits, &cx.options.timing);
+        let model = &cx.robot().model;
+        let names = dofs.iter().map(|&d| model.dofs()[d].name.clone()).collect();
+        let trajectory = timed.into_trajectory(dofs.clone(), names).expect("times of a timed path grow");
+        self.push(kind, trajectory, held);
+    }
+
+    fn push(&mut self, kind: SegmentKind, trajectory: Trajectory, held: Option<&Held>) {
+        self.q.set(trajectory.dofs(), trajectory.end());
+        let goal = self.cx.number;
+        self.segments.push(Segment { kind, goal, trajectory, held: held.cloned(), event: None });
+    }
+
+    fn event(&mut self, event: Event) {
+        if let Some(segment) = self.segments.last_mut() {
+            segment.event = Some(event);
+        }
+    }
+}

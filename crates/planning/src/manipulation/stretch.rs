@@ -1,0 +1,108 @@
+//! Straight motions away from a configuration in contact, and back.
+
+use nalgebra::Vector3;
+use robotc_core::{Configuration, Pose};
+
+use super::problem::GoalContext;
+use crate::cartesian::{LineObstacle, cartesian_line};
+use crate::edge::{EdgeChecker, walk_edge};
+use crate::scene::{RobotChecker, Rules, Scene};
+
+/// Why a straight motion does not work, in words.
+pub(super) type Reason = String;
+
+/// A checker of arm motions with these rules, at the fine resolution.
+pub(super) fn fine_checker<'a>(
+    cx: &GoalContext<'a>,
+    scene: &'a Scene,
+    q: &Configuration,
+    rules: Rules,
+) -> RobotChecker<'a> {
+    let arm = cx.problem.arm;
+    RobotChecker::new(scene, arm.space(), arm.dofs(), q, rules, cx.options.fine_resolution)
+}
+
+/// The obstruction in words, if the state is not free.
+pub(super) fn state_is_free(checker: &mut RobotChecker<'_>, q: &[f64]) -> Result<(), Reason> {
+    checker.state(q).map(|_| ()).map_err(|by| checker.describe(by))
+}
+
+/// Moves the tool from the configuration `from` (taken to be valid under `rules`) by `offset`, and checks that the end
+/// is also valid for free motion under `free`.
+pub(super) fn straight(
+    cx: &GoalContext<'_>,
+    scene: &Scene,
+    q: &Configuration,
+    from: &[f64],
+    offset: &Vector3<f64>,
+    rules: Rules,
+    free: Rules,
+) -> Result<Vec<Vec<f64>>, Reason> {
+    let mut checker = fine_checker(cx, scene, q, rules);
+    let mut goal: Pose = cx.problem.arm.world_from_tool(from);
+    goal.translation.vector += offset;
+    let path =
+        cartesian_line(cx.problem.arm, &mut checker, from, &goal, &cx.options.line).map_err(|failure| {
+            match failure.obstacle {
+                LineObstacle::Blocked(by) => checker.describe(by),
+                other => other.to_string(),
+            }
+        })?;
+    state_is_free(&mut fine_checker(cx, scene, q, free), &path[path.len() - 1])?;
+    Ok(path)
+}
+
+/// Backs the open gripper off from the object along `direction` (unit, world): at first it may touch the object, then
+/// it may not. Ends where free motion is possible.
+pub(super) fn back_off(
+    cx: &GoalContext<'_>,
+    scene: &Scene,
+    q: &Configuration,
+    from: &[f64],
+    direction: &Vector3<f64>,
+) -> Result<Vec<Vec<f64>>, Reason> {
+    let (contact, approach) = (cx.options.contact, cx.options.approach);
+    let clear = Rules { target: None, ..cx.touching() };
+    let mut path = straight(cx, scene, q, from, &(direction * contact), cx.touching(), clear.clone())?;
+    let rest = direction * (approach - contact).max(0.0);
+    let far = straight(cx, scene, q, &path[path.len() - 1], &rest, clear, cx.free(None))?;
+    path.extend(far.into_iter().skip(1));
+    Ok(path)
+}
+
+/// Raises the object from where it stands; the longest of three heights that works.
+pub(super) fn raise(
+    cx: &GoalContext<'_>,
+    scene: &Scene,
+    q: &Configuration,
+    from: &[f64],
+    rules: &Rules,
+) -> Result<Vec<Vec<f64>>, Reason> {
+    let free = cx.free(rules.held.clone());
+    let mut reason = String::new();
+    for factor in [1.0, 0.5, 0.25] {
+        let offset = Vector3::z() * (factor * cx.options.lift);
+        match straight(cx, scene, q, from, &offset, rules.clone(), free.clone()) {
+            Ok(path) => return Ok(path),
+            Err(because) => reason = because,
+        }
+    }
+    Err(reason)
+}
+
+/// Whether the fingers can move between these positions with the arm standing at `arm_values`.
+pub(super) fn fingers_move(
+    cx: &GoalContext<'_>,
+    scene: &Scene,
+    q: &Configuration,
+    arm_values: &[f64],
+    from: &[f64],
+    to: &[f64],
+    rules: Rules,
+) -> Result<(), Reason> {
+    let mut q = cx.with_fingers(q, from);
+    q.set(cx.problem.arm.dofs(), arm_values);
+    let dofs = &cx.gripper().dofs;
+    let mut checker = RobotChecker::new(scene, cx.finger_space, dofs, &q, rules, cx.options.fine_resolution);
+    walk_edge(&mut checker, from, to).map_err(|blocked| checker.describe(blocked.by))
+}

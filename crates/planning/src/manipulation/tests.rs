@@ -1,0 +1,242 @@
+//! Whole plans with the test arm: a table, a wall, boxes to move.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::sync::Arc;
+
+use nalgebra::{UnitQuaternion, Vector3};
+use robotc_core::geom::{ConvexParts, box_part};
+use robotc_core::model::Shape;
+use robotc_core::task::{Destination, Goal, Object, Task};
+use robotc_core::{Kinematics, LinkIdx, Pose, Seed, TypedVec};
+
+use super::*;
+use crate::arm::ArmModel;
+use crate::budget::{Budget, Interrupt};
+use crate::grasp::{Grasp, GraspSet};
+use crate::scene::{Scene, SceneBody};
+use crate::testbed;
+
+/// Top of the table.
+const TABLE: f64 = 0.125;
+const SIZE: [f64; 3] = [0.05, 0.05, 0.12];
+/// Objects stand a hair above the table.
+const STANDING: f64 = TABLE + 0.06 + 1e-4;
+
+struct Bench {
+    task: Task,
+    kinematics: Kinematics,
+    arm: ArmModel,
+    scene: Scene,
+    grasps: GraspSet,
+}
+
+/// Grasps from above and from four sides, at several heights and turns.
+fn grasps() -> GraspSet {
+    let mut all = Vec::new();
+    for k in 0..4 {
+        let yaw = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), TAU * f64::from(k) / 4.0);
+        let down = yaw * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), FRAC_PI_2);
+        for (rotation, height, score) in [(down, 0.03, 0.5), (yaw, 0.0, 0.9), (yaw, 0.02, 0.8)] {
+            all.push(Grasp {
+                preshape: 0,
+                object_from_tool: Pose::from_parts(nalgebra::Translation3::new(0.0, 0.0, height), rotation),
+                approach_in_object: nalgebra::Unit::new_normalize(rotation * Vector3::x()),
+                standoff: 0.0,
+                closed: vec![0.5 * SIZE[1]],
+                contacts: vec![],
+                epsilon: 0.1,
+                score,
+            });
+        }
+    }
+    GraspSet::new("hand", "box", all)
+}
+
+fn link_parts(robot: &robotc_core::Robot) -> TypedVec<LinkIdx, ConvexParts> {
+    let part = |g: &robotc_core::model::Geometry| match g.shape {
+        Shape::Box { size } => box_part(Vector3::from(size)).transformed(&g.origin.pose()),
+        _ => panic!("the test arm is made of boxes"),
+    };
+    robot.model.links().iter().map(|l| l.collisions.iter().map(part).collect()).collect()
+}
+
+/// Boxes at these places, to be moved to those; obstacles by size and centre.
+fn bench(rail: bool, moves: &[([f64; 2], Goal)], obstacles: &[([f64; 3], [f64; 3])]) -> Bench {
+    let robot = Arc::new(testbed::robot(rail));
+    let kinematics = Kinematics::new(robot.model.clone());
+    let standing = |[x, y]: [f64; 2]| Pose::translation(x, y, STANDING);
+    let objects: Vec<Object> = moves
+        .iter()
+        .enumerate()
+        .map(|(i, (at, _))| Object {
+            name: format!("box{i}"),
+            geometry: Arc::new(vec![]),
+            mass: 0.1,
+            friction: 0.5,
+            world_from_object: standing(*at),
+        })
+        .collect();
+    let table = ([0.7, 1.4, 0.05], [0.7, 0.0, TABLE - 0.025]);
+    let parts = |size: [f64; 3]| Arc::new(ConvexParts::new(vec![box_part(Vector3::from(size))]));
+    let movable = objects.iter().map(|o| SceneBody {
+        name: o.name.clone(),
+        parts: parts(SIZE),
+        world_from_body: o.world_from_object,
+    });
+    let fixed = [&table].into_iter().chain(obstacles).enumerate().map(|(i, (size, at))| SceneBody {
+        name: if i == 0 { "table".into() } else { format!("wall{i}") },
+        parts: parts(*size),
+        world_from_body: Pose::translation(at[0], at[1], at[2]),
+    });
+    let links: Vec<LinkIdx> = robot.model.links().indices().collect();
+    let self_pairs = links
+        .iter()
+        .flat_map(|&a| links.iter().map(move |&b| (a, b)))
+        .filter(|pair| pair.0 < pair.1 && !robot.ignored_pairs.contains(pair))
+        .collect();
+    let start = testbed::rest(&robot);
+    Bench {
+        scene: Scene::new(
+            &kinematics,
+            Pose::identity(),
+            &link_parts(&robot),
+            self_pairs,
+            movable.chain(fixed).collect(),
+        ),
+        task: Task {
+            name: "test".into(),
+            robot,
+            arm: 0,
+            world_from_robot: Pose::identity(),
+            start,
+            objects,
+            obstacles: vec![],
+            goals: moves.iter().map(|(_, goal)| goal.clone()).collect(),
+            seed: 1,
+        },
+        arm: testbed::arm(rail),
+        kinematics,
+        grasps: grasps(),
+    }
+}
+
+fn place(object: usize, [x, y]: [f64; 2], any_yaw: bool, keep_upright: Option<f64>) -> Goal {
+    let world_from_object = Pose::translation(x, y, STANDING);
+    Goal::Place { object, destination: Destination::Pose { world_from_object, any_yaw }, keep_upright }
+}
+
+fn run(bench: &Bench, seed: u64, budget: &Budget<'_>) -> Result<Plan, PlanFailure> {
+    let grasps: Vec<&GraspSet> = bench.task.objects.iter().map(|_| &bench.grasps).collect();
+    let problem = Manipulation {
+        task: &bench.task,
+        kinematics: &bench.kinematics,
+        arm: &bench.arm,
+        scene: &bench.scene,
+        grasps: &grasps,
+        start: &bench.task.start,
+    };
+    let options = ManipulationOptions::default();
+    let plan = pick_and_place(&problem, &options, budget, Seed::new(seed), &mut ())?;
+    certify(&problem, &options, &plan, 0.002).unwrap_or_else(|e| panic!("{e}"));
+    Ok(plan)
+}
+
+const WALL: ([f64; 3], [f64; 3]) = ([0.5, 0.03, 0.25], [0.65, 0.0, TABLE + 0.125]);
+
+#[test]
+fn a_box_goes_over_a_wall() {
+    for rail in [false, true] {
+        let bench = bench(rail, &[([0.6, -0.2], place(0, [0.6, 0.22], true, None))], &[WALL]);
+        for seed in 0..5 {
+            let plan = run(&bench, seed, &Budget::unlimited()).unwrap_or_else(|e| panic!("{e}"));
+            assert!(plan.is_complete());
+            let kinds: Vec<SegmentKind> = plan.segments.iter().map(|s| s.kind).collect();
+            use SegmentKind::*;
+            assert_eq!(kinds, [Reach, Approach, Grasp, Lift, Carry, Lower, Release, Retreat]);
+            let put = plan.choices[0].world_from_object.translation.vector;
+            assert!((put - Vector3::new(0.6, 0.22, STANDING)).norm() < 1e-12);
+            assert!(plan.duration() > 1.0 && plan.duration() < 30.0, "{}", plan.duration());
+        }
+    }
+}
+
+#[test]
+fn plans_repeat_by_seed() {
+    let bench = bench(true, &[([0.6, -0.2], place(0, [0.6, 0.22], true, None))], &[WALL]);
+    let plan = |seed| run(&bench, seed, &Budget::unlimited()).unwrap();
+    assert_eq!(plan(7), plan(7));
+    assert_ne!(plan(7), plan(8));
+}
+
+#[test]
+fn the_object_stays_upright() {
+    // Certification looks at the tilt of every state of the carry.
+    let bench = bench(false, &[([0.6, -0.2], place(0, [0.6, 0.22], true, Some(0.15)))], &[WALL]);
+    for seed in 0..5 {
+        assert!(run(&bench, seed, &Budget::unlimited()).unwrap_or_else(|e| panic!("{e}")).is_complete());
+    }
+}
+
+#[test]
+fn an_occupied_place_is_cleared_by_a_later_goal() {
+    // Box 0 belongs where box 1 stands, so box 1 has to go first.
+    let moves =
+        [([0.6, -0.2], place(0, [0.6, 0.2], true, None)), ([0.6, 0.2], place(1, [0.6, 0.45], true, None))];
+    let plan = run(&bench(false, &moves, &[]), 1, &Budget::unlimited()).unwrap_or_else(|e| panic!("{e}"));
+    assert!(plan.is_complete());
+    assert_eq!(plan.choices.iter().map(|c| c.goal).collect::<Vec<_>>(), [1, 0]);
+}
+
+#[test]
+fn regions_are_filled_one_by_one() {
+    let region = Destination::Region {
+        world_from_region: Pose::translation(0.6, 0.25, TABLE),
+        size: [0.25, 0.25],
+        origin_height: STANDING - TABLE,
+    };
+    let goal = |object| Goal::Place { object, destination: region.clone(), keep_upright: None };
+    let moves = [([0.55, -0.1], goal(0)), ([0.6, -0.25], goal(1)), ([0.5, -0.4], goal(2))];
+    let plan = run(&bench(false, &moves, &[]), 3, &Budget::unlimited()).unwrap_or_else(|e| panic!("{e}"));
+    assert!(plan.is_complete());
+    assert_eq!(plan.choices.len(), 3);
+}
+
+#[test]
+fn failures_name_filters_and_culprits() {
+    // Too far away.
+    let far = bench(false, &[([0.6, -0.2], place(0, [0.6, 1.6], true, None))], &[]);
+    let failure = run(&far, 1, &Budget::unlimited()).unwrap_err();
+    let PlanFailure::NoGoal(skipped) = &failure else { panic!("{failure}") };
+    let counts = &skipped[0].reason.rejections.counts;
+    assert!(counts.contains_key(&Filter::DestinationOutOfReach), "{failure}");
+
+    // Something stands on the destination.
+    let blocked = ([0.1, 0.1, 0.1], [0.6, 0.22, TABLE + 0.05]);
+    let occupied = bench(false, &[([0.6, -0.2], place(0, [0.6, 0.22], false, None))], &[blocked]);
+    let failure = run(&occupied, 1, &Budget::unlimited()).unwrap_err();
+    assert!(failure.to_string().contains("box0 touches wall1"), "{failure}");
+
+    // Boxed in on all sides and above.
+    let lid = ([0.2, 0.2, 0.02], [0.6, -0.2, TABLE + 0.14]);
+    let boxed = bench(
+        false,
+        &[([0.6, -0.2], place(0, [0.6, 0.22], true, None))],
+        &[
+            lid,
+            ([0.02, 0.2, 0.13], [0.52, -0.2, TABLE + 0.065]),
+            ([0.02, 0.2, 0.13], [0.68, -0.2, TABLE + 0.065]),
+            ([0.2, 0.02, 0.13], [0.6, -0.28, TABLE + 0.065]),
+            ([0.2, 0.02, 0.13], [0.6, -0.12, TABLE + 0.065]),
+        ],
+    );
+    let failure = run(&boxed, 1, &Budget::unlimited()).unwrap_err();
+    assert!(failure.to_string().contains("gripper not free at the grasp: 12"), "{failure}");
+}
+
+#[test]
+fn a_spent_budget_ends_planning() {
+    let bench = bench(false, &[([0.6, -0.2], place(0, [0.6, 0.22], true, None))], &[WALL]);
+    let spent = || Some(Interrupt::Cancelled);
+    let failure = run(&bench, 1, &Budget::new(&spent)).unwrap_err();
+    assert_eq!(failure, PlanFailure::Interrupted(Interrupt::Cancelled));
+}
