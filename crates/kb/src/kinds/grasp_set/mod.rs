@@ -1,0 +1,377 @@
+//! How a gripper can hold an object: force-closure grasps, best first.
+
+mod contacts;
+mod hand;
+mod strategy;
+mod surface;
+
+#[cfg(feature = "build")]
+mod closure;
+#[cfg(feature = "build")]
+mod generate;
+
+use nalgebra::{Point3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
+use robotc_core::Pose;
+use robotc_core::ids::LinkIdx;
+use robotc_core::robot::Gripper;
+use robotc_planning::grasp::{Contact, Grasp};
+use serde::{Deserialize, Serialize};
+
+use crate::codec;
+use crate::graph::{Dep, PlanError, Planner};
+use crate::kind::{DecodeError, Kind, Portability};
+use crate::kinds::ConvexPartsOf;
+use crate::project::{OfGripperAndObject, OfShape};
+use crate::projection::{Mechanism, Shapes};
+use crate::record::Parts;
+
+/// The kind; its artefact is a list of [`Grasp`]s, best first.
+///
+/// Rays find points of the object's surface; the hand approaches each from several directions, with several turns,
+/// preshapes and standoffs, closes, and is kept when its contact patches resist every wrench (thesis section 4.2).
+pub struct GraspSetKind;
+
+/// What a grasp set is computed from.
+pub struct Inputs {
+    hand: Mechanism,
+    gripper: Gripper,
+    hand_parts: Vec<(LinkIdx, Dep<ConvexPartsOf>)>,
+    object: Shapes,
+    object_parts: Dep<ConvexPartsOf>,
+    friction: f64,
+}
+
+crate::parameters! {
+    /// Parameters of a grasp set.
+    pub struct GraspParameters {
+        /// Distance between the rays that find points of the surface.
+        spacing: f64 ["m"] in 0.0001..=10.0 = auto "a twelfth of the object's diagonal";
+        /// Directions of approach for each point: against the normal, then evenly round a cone about that.
+        directions: u32 [""] in 1..=64 = 5;
+        /// Half angle of that cone.
+        cone: f64 ["rad"] in 0.0..=1.5 = 0.4;
+        /// Equal turns of the hand about the direction of approach.
+        rolls: u32 [""] in 1..=360 = 8;
+        /// Distances of standing back after the first touch, evenly from least_standoff to most_standoff.
+        standoffs: u32 [""] in 1..=16 = 2;
+        /// Smallest distance of standing back.
+        least_standoff: f64 ["m"] in 0.0..=1.0 = auto "a fiftieth of the hand's size";
+        /// Largest distance of standing back.
+        most_standoff: f64 ["m"] in 0.0..=1.0 = auto "an eighth of the hand's size";
+        /// Coulomb friction between finger and object.
+        friction: f64 [""] in 0.01..=10.0 = auto "that of the object";
+        /// Edges of the pyramid that stands for a friction cone.
+        cone_edges: u32 [""] in 3..=64 = 8;
+        /// Surface points this close to a finger are touched: how far pad and object give way.
+        patch_depth: f64 ["m"] in 0.0001..=0.1 = auto "a 120th of the object's diagonal, from 0.5 to 2 mm";
+        /// Most points that stand for the patch of one finger.
+        patch_points: u32 [""] in 1..=64 = 6;
+        /// Smallest epsilon of a grasp that is kept.
+        least_epsilon: f64 [""] in 0.0..=1.0 = 0.01;
+        /// Most grasps that are kept, best first.
+        most_grasps: u32 [""] in 1..=100000 = 600;
+    }
+}
+
+impl Kind for GraspSetKind {
+    const NAME: &'static str = "grasp_set";
+    const FORMAT: u32 = 1;
+    const ALGORITHM: u32 = 1;
+    const PORTABILITY: Portability = Portability::Portable;
+    const DOC: &'static str =
+        "The ways a gripper can hold an object: force-closure grasps with their contacts, best first.";
+
+    type Subject = OfGripperAndObject;
+    type Inputs = Inputs;
+    type Parameters = GraspParameters;
+    type Artefact = Vec<Grasp>;
+
+    fn inputs(planner: &mut Planner<'_>, subject: &OfGripperAndObject) -> Result<Inputs, PlanError> {
+        let project = planner.project();
+        let robot = project.robot();
+        let task = project.task().expect("objects belong to a task");
+        let object = &task.objects[subject.object];
+        let (hand, gripper, links) = Mechanism::hand(&robot.model, &robot.grippers[subject.gripper])?;
+        let mut hand_parts = Vec::new();
+        for (i, &link) in links.iter().enumerate() {
+            if !robot.model.links()[link].collisions.is_empty() {
+                let index = robotc_core::ids::Idx::new(i);
+                hand_parts.push((index, planner.need::<ConvexPartsOf>(&OfShape::Link(link))?));
+            }
+        }
+        let object_parts = planner.need::<ConvexPartsOf>(&OfShape::Object(subject.object))?;
+        let (object, friction) = (Shapes::of(&object.geometry), object.friction);
+        Ok(Inputs { hand, gripper, hand_parts, object, object_parts, friction })
+    }
+
+    fn key_parts(inputs: &Inputs, parts: &mut Parts) {
+        // Artefacts are added by the planner; friction is the default of a parameter, which is part of the key.
+        let Inputs { hand, gripper, hand_parts: _, object, object_parts: _, friction: _ } = inputs;
+        hand.key_parts(parts);
+        let frame = gripper.palm_from_tool;
+        // The tool frame as read: the parser turns written numbers into a pose by fixed arithmetic.
+        let rotation = frame.rotation.coords;
+        let place: [f64; 3] = frame.translation.vector.into();
+        let turn: [f64; 4] = rotation.into();
+        let approach: [f64; 3] = gripper.approach_in_tool.into_inner().into();
+        parts.add("tool", "", &(place, turn, approach));
+        let fingers: Vec<usize> = gripper.fingers.iter().map(|&l| robotc_core::ids::Idx::index(l)).collect();
+        let dofs: Vec<usize> = gripper.dofs.iter().map(|&d| robotc_core::ids::Idx::index(d)).collect();
+        parts.add("fingers", "", &(fingers, dofs, gripper.closing.clone()));
+        for preshape in &gripper.preshapes {
+            parts.add("preshape", &preshape.name, &preshape.values);
+        }
+        object.key_parts("object", parts);
+    }
+
+    fn defaults(inputs: &Inputs) -> GraspParameters {
+        let size = diagonal(&inputs.object.surface().vertices);
+        let reach = inputs
+            .hand
+            .model()
+            .joints()
+            .iter()
+            .map(|joint| Vector3::from(joint.origin.xyz).norm())
+            .fold(0.0, f64::max)
+            .max(inputs.gripper.palm_from_tool.translation.vector.norm());
+        GraspParameters {
+            spacing: size / 12.0,
+            least_standoff: reach / 50.0,
+            most_standoff: reach / 8.0,
+            friction: inputs.friction,
+            patch_depth: (size / 120.0).clamp(0.0005, 0.002),
+            ..GraspParameters::constants()
+        }
+    }
+
+    fn encode(artefact: &Vec<Grasp>) -> Vec<u8> {
+        codec::encode(&artefact.iter().map(Stored::of).collect::<Vec<_>>())
+    }
+
+    fn decode(bytes: &[u8]) -> Result<Vec<Grasp>, DecodeError> {
+        codec::decode::<Vec<Stored>>(bytes)?.into_iter().map(Stored::grasp).collect()
+    }
+
+    fn summary(artefact: &Vec<Grasp>) -> String {
+        match artefact.first() {
+            Some(best) => format!("{} grasps, best epsilon {:.3}", artefact.len(), best.epsilon),
+            None => "no grasp".to_owned(),
+        }
+    }
+}
+
+/// Length of the diagonal of the box around the points.
+fn diagonal(points: &[Point3<f64>]) -> f64 {
+    robotc_core::geom::Aabb::of_points(points).map_or(0.0, |bounds| bounds.diagonal())
+}
+
+/// A grasp as stored: plain numbers, metres and radians.
+#[derive(Serialize, Deserialize)]
+struct Stored {
+    preshape: u32,
+    position: [f64; 3],
+    rotation: [f64; 4],
+    approach: [f64; 3],
+    standoff: f64,
+    closed: Vec<f64>,
+    contacts: Vec<[f64; 6]>,
+    epsilon: f64,
+    score: f64,
+}
+
+impl Stored {
+    fn of(grasp: &Grasp) -> Self {
+        let contact = |c: &Contact| {
+            let (p, n) = (c.point_in_object, c.normal_in_object);
+            [p.x, p.y, p.z, n.x, n.y, n.z]
+        };
+        Self {
+            preshape: grasp.preshape as u32,
+            position: grasp.object_from_tool.translation.vector.into(),
+            rotation: grasp.object_from_tool.rotation.coords.into(),
+            approach: grasp.approach_in_object.into_inner().into(),
+            standoff: grasp.standoff,
+            closed: grasp.closed.clone(),
+            contacts: grasp.contacts.iter().map(contact).collect(),
+            epsilon: grasp.epsilon,
+            score: grasp.score,
+        }
+    }
+
+    fn grasp(self) -> Result<Grasp, DecodeError> {
+        let contacts: Result<_, _> = self
+            .contacts
+            .iter()
+            .map(|&[x, y, z, i, j, k]| {
+                let normal_in_object = direction([i, j, k])?;
+                Ok(Contact { point_in_object: point([x, y, z])?, normal_in_object })
+            })
+            .collect();
+        let rotation = UnitQuaternion::new_unchecked(Quaternion::from(self.rotation));
+        if (rotation.norm() - 1.0).abs() > 1e-9 {
+            return Err(DecodeError::new("a rotation is not of unit length"));
+        }
+        let numbers = [self.standoff, self.epsilon, self.score];
+        if !numbers.iter().chain(&self.closed).all(|x| x.is_finite()) {
+            return Err(DecodeError::new("a number is not finite"));
+        }
+        Ok(Grasp {
+            preshape: self.preshape as usize,
+            object_from_tool: Pose::from_parts(Translation3::from(point(self.position)?), rotation),
+            approach_in_object: direction(self.approach)?,
+            standoff: self.standoff,
+            closed: self.closed,
+            contacts: contacts?,
+            epsilon: self.epsilon,
+            score: self.score,
+        })
+    }
+}
+
+fn point(p: [f64; 3]) -> Result<Point3<f64>, DecodeError> {
+    if p.iter().all(|x| x.is_finite()) { Ok(p.into()) } else { Err(DecodeError::new("a point is not finite")) }
+}
+
+fn direction(d: [f64; 3]) -> Result<Unit<Vector3<f64>>, DecodeError> {
+    let v = Vector3::from(d);
+    // Kept as stored: normalising again could change the last bit.
+    if (v.norm() - 1.0).abs() < 1e-9 {
+        Ok(Unit::new_unchecked(v))
+    } else {
+        Err(DecodeError::new("a direction is not of unit length"))
+    }
+}
+
+#[cfg(feature = "build")]
+mod build {
+    use robotc_core::geom::{ConvexParts, MeshIndex};
+    use robotc_core::model::Kinematics;
+
+    use super::closure::{ContactModel, PointContact, epsilon, wrenches};
+    use super::contacts::PatchOptions;
+    use super::generate::{GenerateOptions, Generator};
+    use super::hand::Hand;
+    use super::surface::ApproachOptions;
+    use super::*;
+    use crate::kind::{Build, BuildError, Context};
+
+    fn options(p: &GraspParameters, preshapes: usize) -> GenerateOptions {
+        let steps = p.standoffs.max(2) - 1;
+        let standoff =
+            |k| p.least_standoff + (p.most_standoff - p.least_standoff) * f64::from(k) / f64::from(steps);
+        GenerateOptions {
+            approaches: ApproachOptions {
+                spacing: p.spacing,
+                rolls: p.rolls as usize,
+                directions: p.directions as usize,
+                cone: p.cone,
+                standoffs: (0..p.standoffs).map(standoff).collect(),
+                preshapes,
+            },
+            patch: PatchOptions { depth: p.patch_depth, points: p.patch_points as usize },
+            surface_spacing: (2.0 * p.patch_depth).min(p.spacing),
+            friction: p.friction,
+            cone_edges: p.cone_edges as usize,
+            least_epsilon: p.least_epsilon,
+            most_grasps: p.most_grasps as usize,
+        }
+    }
+
+    impl Build for GraspSetKind {
+        fn build(
+            inputs: &Inputs,
+            parameters: &GraspParameters,
+            context: &Context<'_>,
+        ) -> Result<Vec<Grasp>, BuildError> {
+            let kinematics = Kinematics::new(inputs.hand.model().clone());
+            let hand_parts = load_hand(inputs, context)?;
+            let hand = Hand::new(&kinematics, &inputs.gripper, |link| part_of(&hand_parts, link));
+            let object_parts = context.load(&inputs.object_parts)?;
+            let options = options(parameters, inputs.gripper.preshapes.len());
+            let mesh = inputs.object.surface();
+            let centre = centre_of_volume(&object_parts);
+            let generator = Generator::new(&hand, &mesh, &object_parts, centre, &options)
+                .ok_or_else(|| BuildError::Impossible("the object has no surface".into()))?;
+            let trials = context.map(&generator.approaches, |_, approach| generator.attempt(approach))?;
+            Ok(generator.collect(trials).0)
+        }
+
+        fn check(
+            artefact: &Vec<Grasp>,
+            inputs: &Inputs,
+            parameters: &GraspParameters,
+            context: &Context<'_>,
+        ) -> Result<(), BuildError> {
+            let wrong = |i: usize, what: &str| Err(BuildError::Check(format!("grasp {i} {what}")));
+            let mesh = inputs.object.surface();
+            let index = MeshIndex::new(&mesh);
+            let object_parts = context.load(&inputs.object_parts)?;
+            let kinematics = Kinematics::new(inputs.hand.model().clone());
+            let hand_parts = load_hand(inputs, context)?;
+            let hand = Hand::new(&kinematics, &inputs.gripper, |link| part_of(&hand_parts, link));
+            let centre = centre_of_volume(&object_parts);
+            let model = ContactModel {
+                friction: parameters.friction,
+                cone_edges: parameters.cone_edges as usize,
+                centre,
+                length: 1.0,
+            };
+            for (i, grasp) in artefact.iter().enumerate() {
+                if grasp.preshape >= inputs.gripper.preshapes.len() || grasp.closed.len() != inputs.gripper.dofs.len()
+                {
+                    return wrong(i, "does not belong to this gripper");
+                }
+                if grasp.contacts.iter().any(|c| index.nearest(&c.point_in_object, 1e-6).is_none()) {
+                    return wrong(i, "has a contact off the surface");
+                }
+                let points: Vec<PointContact> = grasp
+                    .contacts
+                    .iter()
+                    .map(|c| PointContact { point: c.point_in_object, inward: c.normal_in_object })
+                    .collect();
+                // Force closure does not depend on the unit of torque.
+                if epsilon(&wrenches(&points, &model)).is_none_or(|e| e <= 0.0) {
+                    return wrong(i, "does not close");
+                }
+                let object_from_palm = grasp.object_from_tool * inputs.gripper.palm_from_tool.inverse();
+                for (link, palm_from_link) in hand.links.iter().zip(hand.palm_from_links(&grasp.closed)) {
+                    let pose = object_from_palm * palm_from_link;
+                    let inside = |p: &Point3<f64>| object_parts.height(&(pose * p)) < -parameters.patch_depth;
+                    if link.parts.points().any(inside) {
+                        return wrong(i, "has the hand inside of the object");
+                    }
+                }
+            }
+            Ok(())
+        }
+    }
+
+    fn load_hand(
+        inputs: &Inputs,
+        context: &Context<'_>,
+    ) -> Result<Vec<(LinkIdx, std::sync::Arc<ConvexParts>)>, BuildError> {
+        inputs.hand_parts.iter().map(|(link, dep)| Ok((*link, context.load(dep)?))).collect()
+    }
+
+    fn part_of(parts: &[(LinkIdx, std::sync::Arc<ConvexParts>)], link: LinkIdx) -> Option<&ConvexParts> {
+        parts.iter().find(|(l, _)| *l == link).map(|(_, parts)| &**parts)
+    }
+
+    /// Centre of the volume of the parts: the centre of mass where the density is the same everywhere.
+    fn centre_of_volume(parts: &ConvexParts) -> Point3<f64> {
+        let (mut volume, mut moment) = (0.0, Vector3::zeros());
+        for part in parts {
+            let points = part.points();
+            for triangle in part.triangles() {
+                let [a, b, c] = triangle.map(|v| points[v as usize].coords);
+                let six = a.dot(&b.cross(&c));
+                volume += six;
+                moment += (a + b + c) * (six / 4.0);
+            }
+        }
+        if volume > 0.0 {
+            return Point3::from(moment / volume);
+        }
+        parts.bounds().map_or_else(Point3::origin, |bounds| bounds.centre())
+    }
+}
