@@ -377,14 +377,20 @@ fn poses(model: &Arc<RobotModel>, joints: &[(&str, f64)], links: &[&str]) -> Vec
     links.iter().map(|link| of(links[0]).inverse() * of(link)).collect()
 }
 
+/// The folder of real files, or `None` (told on the terminal) where there is none.
+fn shared() -> Option<PathBuf> {
+    let given = std::env::var_os("ROBOTC_SHARED_DATA").map(PathBuf::from);
+    let folder = given.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"));
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    eprintln!("skipped: shared data not present");
+    None
+}
+
 #[test]
 fn frames_agree_with_the_vendors() {
-    let given = std::env::var_os("ROBOTC_SHARED_DATA").map(PathBuf::from);
-    let shared = given.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"));
-    if !shared.is_dir() {
-        eprintln!("skipped: shared data not present");
-        return;
-    }
+    let Some(shared) = shared() else { return };
     for twin in TWINS {
         let ours = Arc::new(load(&specs().join("robots").join(twin.ours), MeshPolicy::Ignore));
         let theirs = Arc::new(load(&shared.join(twin.theirs), MeshPolicy::Ignore));
@@ -402,6 +408,31 @@ fn frames_agree_with_the_vendors() {
                 let gap = (a.to_homogeneous() - b.to_homogeneous()).abs().max();
                 assert!(gap < 1e-8, "{}: {name} is {gap} off", twin.ours);
             }
+        }
+    }
+}
+
+#[test]
+fn vendor_specifications_load() {
+    // They name the shared folder by a path relative to themselves.
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    if shared().is_none() || !beside.is_dir() {
+        return;
+    }
+    let tasks = files(&specs().join("../tests/vendor"), ".task.toml");
+    assert_eq!(tasks.len(), 4);
+    for path in tasks {
+        let mut sources = Sources::default();
+        let (task, found) = spec::load_task(&Disk, &mut sources, &path, &ParameterTable::default());
+        let task = task.unwrap_or_else(|| panic!("{}", found.to_plain_text(&sources))).task;
+        // Only warnings are left, about the vendors' files.
+        for finding in found.iter() {
+            println!("{}: {}", path.display(), finding.message);
+        }
+        for object in &task.objects {
+            let lowest = object.geometry.iter().flat_map(corners).map(|p| (object.world_from_object * p).z);
+            let lowest = lowest.fold(f64::INFINITY, f64::min);
+            assert!((lowest - 0.6).abs() < 0.009, "{} starts at height {lowest}", object.name);
         }
     }
 }
