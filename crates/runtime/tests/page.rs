@@ -82,7 +82,7 @@ fn seen_at(recording: &Recording, camera: &Camera, name: &str, time: f64) -> [f6
 #[test]
 fn things_are_seen_where_they_are() {
     let Some(browser) = browser() else {
-        println!("skipped: no browser found");
+        eprintln!("skipped: no browser found");
         return;
     };
     let recording = scene::sliding_blocks();

@@ -9,6 +9,14 @@ import { Clock, worldPoses } from './timeline.js';
 /** What the address asks for: `#t=2.5`, `#t=end`, `#theme=dark`, `#play`, joined by `&`. */
 const asked = () => new URLSearchParams(location.hash.slice(1));
 
+/** Puts a time into the address, so that it can be passed on. */
+function note(time) {
+  const wishes = asked();
+  wishes.delete('play');
+  wishes.set('t', time.toFixed(2));
+  history.replaceState(null, '', `#${wishes}`);
+}
+
 function shadersOf(document) {
   const elements = [...document.querySelectorAll('script[type="x-shader"]')];
   return Object.fromEntries(elements.map((element) => [element.id, element.textContent]));
@@ -19,7 +27,8 @@ function start() {
   const chip = document.getElementById('picked');
   const scene = loadScene(document);
   const camera = new Camera(scene.camera, scene.focus);
-  const renderer = new Renderer(canvas, scene, camera, shadersOf(document));
+  const shaders = shadersOf(document);
+  let renderer = new Renderer(canvas, scene, camera, shaders);
   const clock = new Clock(scene.duration);
   const labels = new Labels(document.getElementById('labels'), scene);
   const shown = new Set();
@@ -41,6 +50,7 @@ function start() {
   const panel = new Panel(scene, clock, shown, {
     seek,
     changed,
+    note: () => note(clock.time),
     frame: () => camera.frame(),
     theme: () => setTheme(document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark'),
   });
@@ -92,6 +102,12 @@ function start() {
   });
   control(canvas, camera, changed);
   new ResizeObserver(() => draw()).observe(canvas);
+  // Phones take the graphics card away from pages in the background.
+  canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
+  canvas.addEventListener('webglcontextrestored', () => {
+    renderer = new Renderer(canvas, scene, camera, shaders);
+    changed();
+  });
 
   const follow = () => {
     const wishes = asked();

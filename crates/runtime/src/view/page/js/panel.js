@@ -38,37 +38,39 @@ function fillSwitches(scene, shown, changed) {
   }
 }
 
-function fillStages(scene, seek) {
+function fillStages(scene) {
   const duration = scene.duration || 1;
   for (const stage of scene.stages) {
-    const block = make('button', { className: 'stage', type: 'button', tabIndex: -1, title: stage.name });
+    const block = make('div', { className: 'stage' }, make('span', { textContent: stage.name }));
     block.style.left = `${(100 * stage.start) / duration}%`;
     block.style.width = `${(100 * (stage.end - stage.start)) / duration}%`;
     block.style.setProperty('--stage', stage.colour);
-    block.append(make('span', { textContent: stage.name }));
-    block.addEventListener('click', () => seek(stage.start));
     find('stages').append(block);
   }
 }
 
-/** Connects the controls to the clock. `actions` are seek, changed, frame, theme. */
+/** Connects the controls to the clock. `actions` are seek, changed, note, frame, theme. */
 export class Panel {
   constructor(scene, clock, shown, actions) {
     this.scene = scene;
     this.clock = clock;
     fillFacts(scene);
     fillSwitches(scene, shown, actions.changed);
-    fillStages(scene, actions.seek);
+    fillStages(scene);
     document.body.classList.toggle('still', scene.duration === 0);
     document.body.classList.toggle('folded', window.matchMedia('(width < 900px)').matches);
 
     this.slider = find('time');
     this.slider.max = scene.duration;
     this.slider.addEventListener('input', () => actions.seek(Number(this.slider.value)));
+    this.slider.addEventListener('change', actions.note);
     find('total').textContent = seconds(scene.duration);
 
     this.actions = {
-      play: () => clock.toggle(),
+      play: () => {
+        clock.toggle();
+        if (!clock.playing) actions.note();
+      },
       loop: () => (clock.looping = !clock.looping),
       speed: () => (clock.speed = SPEEDS[(SPEEDS.indexOf(clock.speed) + 1) % SPEEDS.length]),
       frame: actions.frame,

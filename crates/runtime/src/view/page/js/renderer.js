@@ -89,12 +89,12 @@ export class Renderer {
     const { canvas } = this;
     this.pixelRatio = Math.min(window.devicePixelRatio || 1, 2);
     const size = [canvas.clientWidth, canvas.clientHeight].map((x) => Math.max(1, Math.round(x * this.pixelRatio)));
-    if (canvas.width === size[0] && canvas.height === size[1]) return false;
-    [canvas.width, canvas.height] = size;
+    const changed = canvas.width !== size[0] || canvas.height !== size[1];
+    if (changed) [canvas.width, canvas.height] = size;
     const share = this.pixelRatio > 1 ? 0.5 : 1;
     const coarse = size.map((x) => Math.ceil(x * share));
     for (const target of [this.depth, this.grainy, this.openness]) target.resize(...coarse);
-    return true;
+    return changed;
   }
 
   draw({ world, shown, time, camera, theme, selected }) {

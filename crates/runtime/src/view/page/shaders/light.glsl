@@ -13,7 +13,8 @@ float key_arriving(vec3 position, vec3 normal) {
   const int TAPS = 32;
   const float WIDTH = 7.0; // texels
   vec3 at = (u_shadow_from_world * vec4(position + normal * u_shadow_texel * 1.5, 1.0)).xyz;
-  if (any(greaterThan(abs(at - 0.5), vec3(0.5)))) return 1.0;
+  // The map holds all that casts shadows; what lies beyond its far end can still receive them.
+  if (any(greaterThan(abs(at.xy - 0.5), vec2(0.5)))) return 1.0;
   mat3 rows = transpose(mat3(u_shadow_from_world));
   vec3 plane = vec3(
     dot(normal, rows[0]) / dot(rows[0], rows[0]),
@@ -28,7 +29,7 @@ float key_arriving(vec3 position, vec3 normal) {
     float angle = float(i) * 2.399963;
     vec2 tap = vec2(cos(angle), sin(angle)) * radius;
     float rise = clamp(dot(slope, tap), -8.0 * radius, 8.0 * radius);
-    sum += texture(u_shadow, vec3(at.xy + tap, at.z + rise - 2e-4));
+    sum += texture(u_shadow, vec3(at.xy + tap, min(at.z + rise - 2e-4, 1.0)));
   }
   return sum / float(TAPS);
 }

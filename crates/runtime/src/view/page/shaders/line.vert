@@ -28,7 +28,7 @@ void main() {
   vec2 along = (to.xy / to.w - from.xy / from.w) * u_screen;
   along = length(along) > 1e-4 ? normalize(along) : vec2(1.0, 0.0);
   float reach = u_width * 0.5 + 1.0;
-  vec2 offset = vec2(-along.y, along.x) * side * reach + along * (end * 2.0 - 1.0) * u_width * 0.25;
+  vec2 offset = vec2(-along.y, along.x) * side * reach;
   vec4 at = end < 0.5 ? from : to;
   gl_Position = near_a < 0.0 && near_b < 0.0
     ? vec4(0.0, 0.0, 2.0, 1.0)

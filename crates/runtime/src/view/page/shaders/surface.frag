@@ -52,6 +52,6 @@ void main() {
   vec3 light = base * (ambient * open + key / PI);
   light += grazing * facets(nh, nv, max(nl, 1e-3), roughness) * key;
   light += rim * studio(reflect(-view, normal), roughness) * mix(open, 1.0, 0.2);
-  light = mix(light, vec3(1.0, 0.62, 0.12), v_finish.z * (0.18 + 0.5 * pow(1.0 - nv, 2.0)));
+  light = mix(light, vec3(1.0, 0.62, 0.12), v_finish.z * (0.12 + 0.5 * pow(1.0 - nv, 2.0)));
   colour = vec4(developed(light), v_colour.a);
 }
