@@ -1,6 +1,9 @@
 //! The inverse-kinematics compiler (in progress).
 
 #[cfg(feature = "generate")]
+pub mod backend;
+pub mod check;
+#[cfg(feature = "generate")]
 pub mod generate;
 pub mod ir;
 pub mod kernel;

@@ -68,6 +68,12 @@ impl Compiled {
         Solver::new(self.program.clone(), &self.chain).expect("the program ran during compilation")
     }
 
+    /// The program as one Rust source file.
+    pub fn rust_source(&self, options: &crate::backend::RustOptions) -> String {
+        let chain = crate::run::TrueChain::new(&self.chain).expect("the chain was small enough to compile");
+        crate::backend::rust_source(&self.program, &chain, options)
+    }
+
     /// The chain that was compiled.
     pub fn chain(&self) -> &SerialChain {
         &self.chain

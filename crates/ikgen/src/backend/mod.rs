@@ -1,0 +1,5 @@
+//! Solution programs as source code.
+
+mod rust;
+
+pub use rust::{RustOptions, rust_source};
