@@ -1,6 +1,7 @@
 //! The loop equation in the form strategies work on: a product of motions equals the wanted motion.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Translation3, UnitQuaternion, Vector3};
+use robotc_core::Pose;
 
 use super::builder::{Builder, Move, Scalar, Turn, Vector};
 use super::facts::{Axis, Facts, tidy};
@@ -78,35 +79,17 @@ impl Problem {
 
     /// The wanted motion `G` of this problem.
     pub fn goal<'b>(&self, b: &'b Builder) -> Motion<'b> {
+        let given = |axis: &Axis| Factor::Joint(self.move_of(b, axis).back(), *axis);
+        // canonical_from_tip (wanted) * tip_from_canonical (zero), less the given motions at both ends.
+        let mut factors: Vec<Factor<'b>> = self.outer.0.iter().rev().map(given).collect();
         let turn = self.facts.canonical_from_base;
-        let mut rows = b.rotation();
-        let mut position = b.position();
         if turn != UnitQuaternion::identity() {
-            rows = product(&constant_rows(b, &turn), &rows);
-            let t = constant_rows(b, &turn);
-            position = Vector(t.map(|row| row.dot(position)));
+            factors.push(Factor::constant(b, &Pose::from_parts(Translation3::identity(), turn)));
         }
-        // G = canonical_from_tip (wanted) * tip_from_canonical (zero)
-        let zero = self.facts.tip.inverse();
-        let rows_g = product(&rows, &constant_rows(b, &zero.rotation));
-        let shift = b.vector(&zero.translation.vector.map(tidy));
-        let position = Vector(rows.map(|row| row.dot(shift))) + position;
-        let mut motion = Motion { rows: rows_g, position };
-        for axis in &self.outer.0 {
-            let undo = self.move_of(b, axis).back();
-            motion = Motion {
-                rows: transpose(&transpose(&motion.rows).map(|c| undo.rotate(b, axis, c))),
-                position: undo.apply(b, axis, motion.position),
-            };
-        }
-        for axis in self.outer.1.iter().rev() {
-            // G e^-1, column by column.
-            let undo = self.move_of(b, axis).back();
-            let basis = [Vector3::x(), Vector3::y(), Vector3::z()].map(|v| b.vector(&v));
-            let columns = basis.map(|v| motion.rotate(undo.rotate(b, axis, v)));
-            let origin = undo.apply(b, axis, b.vector(&Vector3::zeros()));
-            motion = Motion { position: motion.apply(origin), rows: transpose(&columns) };
-        }
+        factors.push(Factor::Rigid { rows: b.rotation(), position: b.position() });
+        factors.push(Factor::constant(b, &self.facts.tip.inverse()));
+        factors.extend(self.outer.1.iter().rev().map(given));
+        let motion = Motion { factors };
         if self.reversed { motion.inverse() } else { motion }
     }
 
@@ -141,28 +124,54 @@ impl Problem {
     }
 }
 
-/// A rigid motion as expressions.
-#[derive(Clone, Copy)]
+/// A rigid motion: a product of factors, the last of which acts first.
+#[derive(Clone)]
 pub struct Motion<'b> {
-    rows: [Vector<'b>; 3],
-    position: Vector<'b>,
+    factors: Vec<Factor<'b>>,
+}
+
+#[derive(Clone)]
+enum Factor<'b> {
+    Rigid { rows: [Vector<'b>; 3], position: Vector<'b> },
+    Joint(Move<'b>, Axis),
 }
 
 impl<'b> Motion<'b> {
     /// A direction after the motion.
-    pub fn rotate(&self, v: Vector<'b>) -> Vector<'b> {
-        Vector(self.rows.map(|row| row.dot(v)))
+    pub fn rotate(&self, b: &'b Builder, v: Vector<'b>) -> Vector<'b> {
+        self.factors.iter().rev().fold(v, |v, factor| match factor {
+            Factor::Rigid { rows, .. } => Vector(rows.map(|row| row.dot(v))),
+            Factor::Joint(step, axis) => step.rotate(b, axis, v),
+        })
     }
 
     /// A point after the motion.
-    pub fn apply(&self, p: Vector<'b>) -> Vector<'b> {
-        self.rotate(p) + self.position
+    pub fn apply(&self, b: &'b Builder, p: Vector<'b>) -> Vector<'b> {
+        self.factors.iter().rev().fold(p, |p, factor| match factor {
+            Factor::Rigid { rows, position } => Vector(rows.map(|row| row.dot(p))) + *position,
+            Factor::Joint(step, axis) => step.apply(b, axis, p),
+        })
     }
 
-    fn inverse(&self) -> Self {
-        let rows = transpose(&self.rows);
-        let back = Motion { rows, position: self.position };
-        Motion { rows, position: -back.rotate(self.position) }
+    /// The motion back.
+    pub fn inverse(&self) -> Self {
+        let factors = self.factors.iter().rev().map(|factor| match factor {
+            Factor::Rigid { rows, position } => {
+                let back = transpose(rows);
+                Factor::Rigid { rows: back, position: -Vector(back.map(|row| row.dot(*position))) }
+            }
+            Factor::Joint(step, axis) => Factor::Joint(step.back(), *axis),
+        });
+        Self { factors: factors.collect() }
+    }
+}
+
+impl<'b> Factor<'b> {
+    fn constant(b: &'b Builder, pose: &Pose) -> Self {
+        let m = pose.rotation.to_rotation_matrix();
+        let rows =
+            [0, 1, 2].map(|i| b.vector(&Vector3::new(tidy(m[(i, 0)]), tidy(m[(i, 1)]), tidy(m[(i, 2)]))));
+        Factor::Rigid { rows, position: b.vector(&pose.translation.vector.map(tidy)) }
     }
 }
 
@@ -207,16 +216,6 @@ impl<'b> From<Scalar<'b>> for Move<'b> {
     }
 }
 
-fn constant_rows<'b>(b: &'b Builder, turn: &UnitQuaternion<f64>) -> [Vector<'b>; 3] {
-    let m = turn.to_rotation_matrix();
-    [0, 1, 2].map(|i| b.vector(&Vector3::new(tidy(m[(i, 0)]), tidy(m[(i, 1)]), tidy(m[(i, 2)]))))
-}
-
 fn transpose<'b>(m: &[Vector<'b>; 3]) -> [Vector<'b>; 3] {
     [0, 1, 2].map(|j| Vector([0, 1, 2].map(|i| m[i].0[j])))
-}
-
-fn product<'b>(a: &[Vector<'b>; 3], b: &[Vector<'b>; 3]) -> [Vector<'b>; 3] {
-    let columns = transpose(b);
-    a.map(|row| Vector(columns.map(|column| row.dot(column))))
 }

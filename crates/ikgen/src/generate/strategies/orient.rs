@@ -20,7 +20,8 @@ pub(super) fn orient<'b>(
     b.note("the angle between the first and the last axis of the wrist");
     let q5 = angle_between(b, names[1], directions, last);
     let tilted = h6.turned(h5, q5);
-    let q4 = b.align(names[0], tilted.dot(last) - h4.dot(tilted) * h4.dot(last), h4.dot(tilted.cross(last)));
+    let tilted = tilted - tilted.along(h4);
+    let q4 = b.align(names[0], tilted.dot(last), h4.dot(tilted.cross(last)));
     let side = across(directions[2]);
     let turned = rotated(b.vector(&side)).turned_back(h4, q4).turned_back(h5, q5);
     let q6 =

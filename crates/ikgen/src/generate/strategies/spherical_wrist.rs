@@ -63,7 +63,7 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
     problem.axes[..3].copy_from_slice(&[a1, a2, a3]);
 
     let goal = problem.goal(b);
-    let place = goal.apply(b.vector(&centre));
+    let place = goal.apply(b, b.vector(&centre));
     let names: Vec<String> = (0..6).map(|i| problem.name(i)).collect();
     let lines = [a1, a2, a3].map(|a| Line::constant(b, &a));
     b.note("the place of the wrist centre");
@@ -95,7 +95,7 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
 
     b.note("what is left of the rotation for the wrist");
     let unturned = |v| {
-        let mut v = goal.rotate(v);
+        let mut v = goal.rotate(b, v);
         for i in 0..3 {
             if let Some((_, axis)) = given.filter(|(before, _)| *before == i) {
                 v = problem.move_of(b, &axis).back().rotate(b, &axis, v);

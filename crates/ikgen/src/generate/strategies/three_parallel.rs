@@ -55,7 +55,7 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
     let hv = b.vector(&h);
 
     b.note("height of the meeting point of axes 5 and 6 along the parallel axes: joint 1 alone");
-    let (h1, place) = (direction(0), goal.apply(point(5)) - point(0));
+    let (h1, place) = (direction(0), goal.apply(b, point(5)) - point(0));
     let still = place.along(h1);
     let q1 = b.circle(
         &names[0],
@@ -65,15 +65,16 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
     );
 
     b.note("angle between the parallel axes and axis 6: joint 5");
-    let last = goal.rotate(direction(5)).turned_back(h1, q1);
+    let last = goal.rotate(b, direction(5)).turned_back(h1, q1);
     let q5 = angle_between(b, &names[4], [&h, &axes[4].direction, &axes[5].direction], last);
 
     b.note("direction of the parallel axes as seen from the tip: joint 6");
     let from = hv.turned_back(direction(4), q5);
-    let to = Vector(b_transposed(b, &goal, hv.turned(h1, q1)));
+    let to = goal.inverse().rotate(b, hv.turned(h1, q1));
     let h6 = direction(5);
-    let (x, y) = (from.dot(to) - h6.dot(from) * h6.dot(to), -h6.dot(from.cross(to)));
-    let rest = Rest { problem, b, names: &names, goal, q1, q5 };
+    let across_6 = from - from.along(h6);
+    let (x, y) = (across_6.dot(to), -h6.dot(across_6.cross(to)));
+    let rest = Rest { problem, b, names: &names, goal: &goal, q1, q5 };
     let aligned = from.cross(h6).square();
     b.if_zero(
         aligned,
@@ -87,22 +88,12 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
     Ok("axes 5 and 6 meeting".into())
 }
 
-/// `G^T v`.
-fn b_transposed<'b>(
-    b: &'b Builder,
-    goal: &Motion<'b>,
-    v: Vector<'b>,
-) -> [crate::generate::builder::Scalar<'b>; 3] {
-    let basis = [nalgebra::Vector3::x(), nalgebra::Vector3::y(), nalgebra::Vector3::z()];
-    basis.map(|e| goal.rotate(b.vector(&e)).dot(v))
-}
-
 /// What remains once joints 1 and 5 are known.
 struct Rest<'b, 'p> {
     problem: &'p Problem,
     b: &'b Builder,
     names: &'p [String],
-    goal: Motion<'b>,
+    goal: &'p Motion<'b>,
     q1: Turn<'b>,
     q5: Turn<'b>,
 }
@@ -137,9 +128,9 @@ impl<'b> Rest<'b, '_> {
         let (centre, h6) = (self.point(5), self.direction(5));
         let arm = self.elbow_side();
         let along = arm.along(h6);
-        let still = self.seen_from_axis_2(self.goal.apply(centre + along));
+        let still = self.seen_from_axis_2(self.goal.apply(b, centre + along));
         let turn_only = |v: Vector<'b>| {
-            let v = self.goal.rotate(v).turned_back(self.direction(0), self.q1);
+            let v = self.goal.rotate(b, v).turned_back(self.direction(0), self.q1);
             v - v.along(self.direction(1))
         };
         // R6^T swings the other way.
@@ -167,7 +158,7 @@ impl<'b> Rest<'b, '_> {
         b.note("the triangle of axes 2, 3 and 4");
         let centre = self.point(5);
         let back = self.elbow_side().turned_back(self.direction(5), q6);
-        let u = self.seen_from_axis_2(self.goal.apply(centre + back));
+        let u = self.seen_from_axis_2(self.goal.apply(b, centre + back));
         let (p23, p34) = (self.point(2) - self.point(1), self.point(3) - self.point(2));
         let h3 = self.direction(2);
         let constant = p23.square() + p34.square();
@@ -180,7 +171,7 @@ impl<'b> Rest<'b, '_> {
         let v = b.vector(&side).turned_back(self.direction(4), self.q5).turned_back(self.direction(5), q6);
         let v = self
             .goal
-            .rotate(v)
+            .rotate(b, v)
             .turned_back(self.direction(0), self.q1)
             .turned_back(self.direction(1), q2)
             .turned_back(h3, q3);
