@@ -54,7 +54,7 @@ impl Builder {
             variables,
             free,
             snap: 0.0,
-            slack: 1e-9,
+            slack: 0.0,
             exprs: Exprs::default(),
             names: Vec::new(),
             body: Vec::new(),
@@ -170,6 +170,13 @@ impl Builder {
         let then = self.nested(then);
         let otherwise = self.nested(otherwise);
         self.push(Stmt::IfZero { value: value.expr, tolerance, then, otherwise });
+    }
+
+    /// Does `otherwise` only if nothing that `first` emits is accepted. Nothing may follow in the same block.
+    pub fn fallback(&self, first: impl FnOnce(), otherwise: impl FnOnce()) {
+        let first = self.nested(first);
+        let otherwise = self.nested(otherwise);
+        self.push(Stmt::Fallback { first, otherwise });
     }
 
     fn nested(&self, write: impl FnOnce()) -> Block {
@@ -306,7 +313,7 @@ impl<'b> Vector<'b> {
     /// Turned about a unit `axis` through the origin.
     pub fn turned(self, axis: Self, turn: Turn<'b>) -> Self {
         let along = self.along(axis);
-        along + (self - along) * turn.cos + axis.cross(self) * turn.sin
+        along + ((self - along) * turn.cos + axis.cross(self) * turn.sin)
     }
 
     /// Turned the other way.

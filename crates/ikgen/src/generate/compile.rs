@@ -10,6 +10,7 @@ use super::problem::Problem;
 use super::strategies::{self, Strategy};
 use crate::ir::Program;
 use crate::passes;
+use crate::report::poses::sets;
 use crate::run::Solver;
 
 /// Choices of a compilation.
@@ -21,7 +22,7 @@ pub struct Options {
     /// Variables whose values the caller will give; `None` chooses: none for up to six variables, and of seven the one
     /// farthest from the base that leaves a chain that can be solved and moves well.
     pub free: Option<Vec<usize>>,
-    /// Random poses on which a program must prove itself before it is returned.
+    /// Poses of each set on which a program is tried before it is returned.
     pub trial_poses: usize,
 }
 
@@ -116,20 +117,39 @@ fn search(
         Some(free) => vec![checked(free, chain)?],
         None => super::lock::choices(chain),
     };
-    let mut last_failure = None;
+    let mut failure = None;
+    let mut best: Option<Found> = None;
     // Rounding of the file itself is never a snap that matters.
     let ladder = [1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 5e-4, 2e-3, 1e-2];
     let allowed = ladder.into_iter().filter(|t| *t <= options.tolerance.max(1e-9));
     for tolerance in allowed {
         for free in &choices {
             match attempt(chain, options, free, tolerance, &letters, trace) {
-                Ok(found) => return Ok(found),
-                Err(Some(failure)) => last_failure = Some(failure),
+                Ok(found) if found.lost == 0 => return Ok((found.program, found.class)),
+                Ok(found) => {
+                    if best.as_ref().is_none_or(|b| found.lost < b.lost) {
+                        best = Some(found);
+                    }
+                    // Other free joints would not be better, a simpler ideal chain might.
+                    break;
+                }
+                Err(Some(reason)) => failure = Some(reason),
                 Err(None) => {}
             }
         }
     }
-    Err(last_failure.unwrap_or_else(|| refusal(chain, &letters, &choices)))
+    match best {
+        Some(found) => Ok((found.program, found.class)),
+        None => Err(failure.unwrap_or_else(|| refusal(chain, &letters, &choices))),
+    }
+}
+
+/// A program that solves all random trial poses.
+struct Found {
+    program: Program,
+    class: String,
+    /// Singular trial poses without a solution.
+    lost: usize,
 }
 
 /// One tolerance and one choice of free variables. An error carries the reason why a program that was found is no good.
@@ -140,7 +160,7 @@ fn attempt(
     tolerance: f64,
     letters: &str,
     trace: &mut Vec<String>,
-) -> Result<(Program, String), Option<String>> {
+) -> Result<Found, Option<String>> {
     let facts = Facts::new(chain, tolerance).ok_or(None)?;
     let Some(problem) = Problem::new(&facts, free) else {
         trace.push(format!("free {free:?}: given joints in more than one place between unknown ones"));
@@ -166,14 +186,14 @@ fn attempt(
                     // Below this the difference is rounding of the description, which the check covers.
                     let snap = problem.snap();
                     program.snap = if snap < 1e-12 { 0.0 } else { snap };
-                    program.slack = 1e-9 + 4.0 * program.snap;
+                    program.slack = 4.0 * program.snap;
                     program.class = class.clone();
                     let program = passes::optimise(&program);
                     match trial(&program, chain, options) {
-                        Ok(()) => {
-                            line += &format!("{how}; solved");
+                        Ok(lost) => {
+                            line += &format!("{how}; solved, {lost} of the singular trial poses lost");
                             trace.push(line);
-                            return Ok((program, class));
+                            return Ok(Found { program, class, lost });
                         }
                         Err(reason) => {
                             line += &format!("{how}; {reason}");
@@ -188,24 +208,27 @@ fn attempt(
     Err(failure)
 }
 
-/// Runs a program on random poses; says how it failed.
-fn trial(program: &Program, chain: &SerialChain, options: &Options) -> Result<(), String> {
+/// Runs a program on random and singular poses: how many of the latter it lost, or why it is no good.
+fn trial(program: &Program, chain: &SerialChain, options: &Options) -> Result<usize, String> {
     program.validate().map_err(|e| format!("the program is not valid: {e}"))?;
     let solver = Solver::new(program.clone(), chain).map_err(|e| e.to_string())?;
-    let mut rng = Seed::new(0).split("ikgen trial").rng();
     let mut out = IkSolutions::new();
-    let mut solved = 0;
-    for _ in 0..options.trial_poses {
-        let values = crate::report::poses::random(chain, &mut rng);
-        let free: Vec<f64> = program.free.iter().map(|v| values[*v]).collect();
-        solver.solve(&chain.forward(&values), &free, &mut out);
-        solved += usize::from(!out.is_empty());
+    let mut lost = 0;
+    let seed = Seed::new(0).split("ikgen trial");
+    for set in sets(chain, &program.free, options.trial_poses, seed) {
+        let mut solved = 0;
+        for values in &set.vectors {
+            let free: Vec<f64> = program.free.iter().map(|v| values[*v]).collect();
+            solver.solve(&chain.forward(values), &free, &mut out);
+            solved += usize::from(!out.is_empty());
+        }
+        let missed = set.vectors.len() - solved;
+        if set.regular && missed > 0 {
+            return Err(format!("solves only {solved} of {} random poses", set.vectors.len()));
+        }
+        lost += missed;
     }
-    if solved == options.trial_poses {
-        Ok(())
-    } else {
-        Err(format!("solves only {solved} of {} random poses", options.trial_poses))
-    }
+    Ok(lost)
 }
 
 fn checked(free: &[usize], chain: &SerialChain) -> Result<Vec<usize>, String> {

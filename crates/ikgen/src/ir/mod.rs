@@ -57,8 +57,8 @@ impl RootKind {
     pub fn solve(self, x: &[f64], slack: f64) -> crate::kernel::roots::Roots {
         use crate::kernel::roots;
         match self {
-            Self::Align => roots::align(x[0], x[1]),
-            Self::Mirror => roots::mirror(x[0], x[1]),
+            Self::Align => roots::align(x[0], x[1], slack),
+            Self::Mirror => roots::mirror(x[0], x[1], slack),
             Self::Circle => roots::circle(x[0], x[1], x[2], slack),
             Self::Conic => roots::conic([x[0], x[1], x[2], x[3], x[4], x[5]], slack),
             Self::Quadratic => roots::quadratic(x[0], x[1], x[2], slack),
@@ -118,6 +118,13 @@ pub enum Stmt {
         /// Where it is not.
         otherwise: Block,
     },
+    /// Runs the second block only if no candidate emitted by the first was accepted.
+    Fallback {
+        /// Run first.
+        first: Block,
+        /// Run if that gave nothing.
+        otherwise: Block,
+    },
     /// A candidate solution: one value for each variable.
     Emit(Vec<Value>),
     /// Why the following statements hold; for readers and for the comments of generated sources.
@@ -138,7 +145,8 @@ pub struct Program {
     pub free: Vec<usize>,
     /// How far the ideal chain of the program is from the described one (metres, radians; the larger).
     pub snap: f64,
-    /// How far an equation may be from having a root and still be tried at its nearest point.
+    /// How far the equations of the ideal chain may be from those of the described one: an equation that misses its
+    /// roots by less is tried where it comes nearest.
     pub slack: f64,
     /// Expressions.
     pub exprs: Exprs,
@@ -190,7 +198,7 @@ pub fn exprs_of(stmt: &Stmt, mut f: impl FnMut(Expr)) {
         Stmt::Let { value, .. } | Stmt::IfZero { value, .. } => f(*value),
         Stmt::ForEach { args, .. } => args.iter().for_each(|e| f(*e)),
         Stmt::Emit(values) => values.iter().flat_map(Value::exprs).for_each(f),
-        Stmt::Note(_) => {}
+        Stmt::Note(_) | Stmt::Fallback { .. } => {}
     }
 }
 
@@ -199,6 +207,7 @@ pub fn blocks_of(stmt: &Stmt) -> Vec<&Block> {
     match stmt {
         Stmt::ForEach { body, .. } => vec![body],
         Stmt::IfZero { then, otherwise, .. } => vec![then, otherwise],
+        Stmt::Fallback { first, otherwise } => vec![first, otherwise],
         _ => Vec::new(),
     }
 }
@@ -228,6 +237,6 @@ pub fn map_stmt(stmt: &Stmt, expr: &mut dyn FnMut(Expr) -> Expr) -> Stmt {
                 })
                 .collect(),
         ),
-        Stmt::Note(text) => Stmt::Note(text.clone()),
+        Stmt::Note(_) | Stmt::Fallback { .. } => stmt.clone(),
     }
 }

@@ -235,6 +235,12 @@ impl Reader {
                 let otherwise = self.block()?;
                 Ok(Stmt::IfZero { value, tolerance, then, otherwise })
             }
+            "first" => {
+                let first = self.block()?;
+                self.word("else")?;
+                let otherwise = self.block()?;
+                Ok(Stmt::Fallback { first, otherwise })
+            }
             "emit" => {
                 let mut values = Vec::new();
                 loop {

@@ -43,6 +43,13 @@ fn block(p: &Program, stmts: &Block, depth: usize, out: &mut String) {
                 block(p, otherwise, depth + 1, out);
                 let _ = writeln!(out, "{pad}}}");
             }
+            Stmt::Fallback { first, otherwise } => {
+                let _ = writeln!(out, "{pad}first {{");
+                block(p, first, depth + 1, out);
+                let _ = writeln!(out, "{pad}}} else {{");
+                block(p, otherwise, depth + 1, out);
+                let _ = writeln!(out, "{pad}}}");
+            }
             Stmt::Emit(values) => {
                 let values: Vec<String> = values
                     .iter()

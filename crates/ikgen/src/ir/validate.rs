@@ -81,6 +81,10 @@ impl Validator<'_> {
                     self.block(then)?;
                     self.block(otherwise)?;
                 }
+                Stmt::Fallback { first, otherwise } => {
+                    self.block(first)?;
+                    self.block(otherwise)?;
+                }
                 Stmt::Emit(values) => {
                     let expected = self.program.variables;
                     if values.len() != expected {

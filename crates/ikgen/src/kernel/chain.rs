@@ -88,9 +88,10 @@ pub fn forward(links: &[Link], last_from_tip: &Frame, steps: &[[f64; 2]]) -> Fra
     at.times(last_from_tip)
 }
 
-/// Brings `values` onto the pose by damped Newton steps on the true chain; the variables marked in `held` stay.
+/// Brings `values` onto the pose by Newton steps on the true chain; the variables marked in `held` stay.
 ///
-/// Returns the distance that is left. The values are changed only where that made the distance smaller.
+/// Returns the distance that is left, the smallest met. Steps may go uphill: where two solutions fall together Newton's method
+/// halves its distance to them from far out, but may first have to get there.
 pub fn polish(
     links: &[Link],
     last_from_tip: &Frame,
@@ -98,55 +99,54 @@ pub fn polish(
     values: &mut [f64],
     held: &[bool],
 ) -> f64 {
+    // Directions in which the tip hardly moves are left alone.
+    const DAMPING: f64 = 1e-15;
     let n = values.len();
-    let mut damping = 1e-14;
-    let (mut distance, mut error, mut columns) = linearise(links, last_from_tip, base_from_tip, values);
-    for _ in 0..20 {
-        if !(distance > 1e-14) {
+    let mut at = [0.0; MAX_JOINTS];
+    at[..n].copy_from_slice(values);
+    let mut best = f64::INFINITY;
+    for _ in 0..30 {
+        let (distance, error, columns) = linearise(links, last_from_tip, base_from_tip, &at[..n]);
+        if distance < best {
+            let converged = distance < EXACT && distance > 0.1 * best;
+            best = distance;
+            values.copy_from_slice(&at[..n]);
+            if best < 1e-12 || converged {
+                break;
+            }
+        } else if best < EXACT || !(distance < f64::INFINITY) {
             break;
         }
         let mut normal = [[0.0; MAX_JOINTS]; MAX_JOINTS];
         let mut right = [0.0; MAX_JOINTS];
         for i in 0..n {
-            for j in 0..=i {
-                let mut sum = 0.0;
-                for k in 0..6 {
-                    sum += columns[i][k] * columns[j][k];
-                }
-                normal[i][j] = if held[i] || held[j] { 0.0 } else { sum };
+            if held[i] {
+                normal[i][i] = 1.0;
+                continue;
             }
-            normal[i][i] = if held[i] { 1.0 } else { normal[i][i] + damping + 1e-3 * distance * distance };
+            for j in 0..=i {
+                if !held[j] {
+                    for k in 0..6 {
+                        normal[i][j] += columns[i][k] * columns[j][k];
+                    }
+                }
+            }
+            normal[i][i] += DAMPING;
             for k in 0..6 {
                 right[i] += columns[i][k] * error[k];
             }
-            if held[i] {
-                right[i] = 0.0;
-            }
         }
         solve_symmetric(&mut normal, &mut right, n);
-        let mut next = [0.0; MAX_JOINTS];
+        let mut longest = 0.0f64;
         for i in 0..n {
-            next[i] = values[i] + right[i].clamp(-0.5, 0.5);
+            longest = longest.max(right[i].abs());
         }
-        let trial = linearise(links, last_from_tip, base_from_tip, &next[..n]);
-        if trial.0 < distance {
-            let slow = trial.0 > 0.5 * distance;
-            values.copy_from_slice(&next[..n]);
-            (distance, error, columns) = trial;
-            if slow && distance < TOLERANCE {
-                break;
-            }
-        } else {
-            if distance < TOLERANCE {
-                break;
-            }
-            damping = if damping < 1e-9 { 1e-9 } else { damping * 100.0 };
-            if damping > 1.0 {
-                break;
-            }
+        let scale = if longest > 0.3 { 0.3 / longest } else { 1.0 };
+        for i in 0..n {
+            at[i] += scale * right[i];
         }
     }
-    distance
+    best
 }
 
 /// Distance to the pose, its six-vector (metres, radians), and the column of each variable.

@@ -1,19 +1,29 @@
 //! Root finders of the solution language. Angles are unknown through their cosine and sine; no root takes an
 //! inverse trigonometric function.
 
-use super::math::sqrt;
+use super::math::{cos_sin, sqrt};
 
 /// Below this a coefficient counts as zero: the equation then says nothing about its unknown.
 pub const VANISHING: f64 = 1e-11;
 
-/// Up to four roots, each `[cos, sin]` of an angle, or `[length, 0]`.
+/// An equation that misses its roots by no more than this is taken at the nearest point: the edge of what an arm can do.
+pub const EDGE: f64 = 1e-9;
+
+/// How many angles are tried for an unknown that is free.
+const REPRESENTATIVES: usize = 32;
+
+/// The k-th of them: zero first, then a half turn, then quarters between, and so on.
+fn representative(k: usize) -> [f64; 2] {
+    let reversed = ((k as u32).reverse_bits() >> 27) as f64;
+    cos_sin(reversed * (core::f64::consts::TAU / 32.0))
+}
+
+/// The roots of an equation, each `[cos, sin]` of an angle, or `[length, 0]`.
 #[derive(Clone, Copy, Debug)]
 pub struct Roots {
-    /// The roots; the first `len` count.
-    pub items: [[f64; 2]; 4],
-    /// How many.
-    pub len: usize,
-    /// The unknown is free and the roots are representatives: later ones are tried only while none has led to a solution.
+    items: [[f64; 2]; 4],
+    len: usize,
+    /// The unknown is free, or nearly so: later roots are tried only while none has led to a solution.
     pub free: bool,
 }
 
@@ -21,13 +31,17 @@ impl Roots {
     /// No root.
     pub const NONE: Roots = Roots { items: [[1.0, 0.0]; 4], len: 0, free: false };
 
-    /// Any angle will do: a quarter turn apart, zero first.
-    pub const ANY_ANGLE: Roots =
-        Roots { items: [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]], len: 4, free: true };
+    /// Any angle will do.
+    pub const ANY_ANGLE: Roots = Roots { items: [[1.0, 0.0]; 4], len: 0, free: true };
 
-    /// The roots, in order.
-    pub fn as_slice(&self) -> &[[f64; 2]] {
-        &self.items[..self.len]
+    /// How many roots there are.
+    pub fn count(&self) -> usize {
+        if self.free { self.len + REPRESENTATIVES } else { self.len }
+    }
+
+    /// One of them.
+    pub fn get(&self, i: usize) -> [f64; 2] {
+        if i < self.len { self.items[i] } else { representative(i - self.len) }
     }
 
     fn push(&mut self, root: [f64; 2]) {
@@ -39,55 +53,61 @@ impl Roots {
 }
 
 /// The angle whose cosine and sine are proportional to `x` and `y`.
-pub fn align(x: f64, y: f64) -> Roots {
+pub fn align(x: f64, y: f64, slack: f64) -> Roots {
     let n = sqrt(x * x + y * y);
     if n < VANISHING {
         return Roots::ANY_ANGLE;
     }
     let mut roots = Roots::NONE;
+    roots.free = n < slack;
     roots.push([x / n, y / n]);
     roots
 }
 
 /// The two angles whose cosine is proportional to `x` and sine to plus or minus `y`.
-pub fn mirror(x: f64, y: f64) -> Roots {
+pub fn mirror(x: f64, y: f64, slack: f64) -> Roots {
     let n = sqrt(x * x + y * y);
     if n < VANISHING {
         return Roots::ANY_ANGLE;
     }
     let mut roots = Roots::NONE;
-    roots.push([x / n, y / n]);
-    if y.abs() > VANISHING * n {
-        roots.push([x / n, -y / n]);
+    let (x, y) = (x / n, apart(y.abs() / n, slack / n));
+    roots.push([x, y]);
+    if y > VANISHING {
+        roots.push([x, -y]);
     }
     roots
 }
 
+/// The sine at which two roots that nearly fall together are started. The ideal chain says where they meet only up to
+/// `slack`; from the meeting point itself a polish could find neither.
+fn apart(sine: f64, slack: f64) -> f64 {
+    let least = sqrt(2.0 * slack);
+    if sine < least { if least < 0.2 { least } else { 0.2 } } else { sine }
+}
+
 /// The angles with `a cos + b sin = d`.
 ///
-/// When the line misses the unit circle by no more than `slack` the nearest angle is given, once: such poses are at
-/// the edge of what the arm can do, and the check of solutions decides.
+/// When the line misses the unit circle by no more than [`EDGE`] and `slack` the nearest angle is given: such poses are at the
+/// edge of what the arm can do, and the check of solutions decides.
 pub fn circle(a: f64, b: f64, d: f64, slack: f64) -> Roots {
     let n = sqrt(a * a + b * b);
     if n < VANISHING {
-        return if d.abs() <= slack { Roots::ANY_ANGLE } else { Roots::NONE };
+        return if d.abs() <= EDGE + slack { Roots::ANY_ANGLE } else { Roots::NONE };
     }
     let miss = d.abs() - n;
-    if !(miss <= slack) {
+    if !(miss <= EDGE + slack) {
         return Roots::NONE;
     }
     let (x, y) = (a / n, b / n);
-    let mut roots = Roots::NONE;
-    if miss >= 0.0 {
-        let sign = if d < 0.0 { -1.0 } else { 1.0 };
-        roots.push([sign * x, sign * y]);
-        return roots;
-    }
-    let c = d / n;
+    let c = if miss < 0.0 { d / n } else { 1f64.copysign(d) };
     // (1 - c)(1 + c) keeps the digits that 1 - c * c loses near the edge.
-    let s = sqrt((1.0 - c) * (1.0 + c));
+    let s = apart(sqrt((1.0 - c) * (1.0 + c)), slack / n);
+    let mut roots = Roots::NONE;
     roots.push([c * x - s * y, c * y + s * x]);
-    roots.push([c * x + s * y, c * y - s * x]);
+    if s > 0.0 {
+        roots.push([c * x + s * y, c * y - s * x]);
+    }
     roots
 }
 
@@ -97,15 +117,14 @@ pub fn quadratic(a: f64, b: f64, c: f64, slack: f64) -> Roots {
     if a.abs() < VANISHING {
         if b.abs() >= VANISHING {
             roots.push([-c / b, 0.0]);
-        } else if c.abs() <= slack {
+        } else if c.abs() <= EDGE + slack {
             roots.push([0.0, 0.0]);
-            roots.free = true;
         }
         return roots;
     }
     let (half, product) = (-0.5 * b / a, c / a);
     let discriminant = half * half - product;
-    if !(discriminant >= -slack) {
+    if !(discriminant >= -EDGE - slack) {
         return roots;
     }
     let root = sqrt(discriminant);
@@ -155,9 +174,9 @@ pub fn conic(q: [f64; 6], slack: f64) -> Roots {
         if n < VANISHING {
             continue;
         }
-        let met = circle(line[0] / n, line[1] / n, -line[2] / n, 1e-7 + slack);
-        for &root in met.as_slice() {
-            roots.push(improve([a, 2.0 * b, c, 2.0 * d, 2.0 * e, f], root));
+        let met = circle(line[0] / n, line[1] / n, -line[2] / n, slack.max(1e-7));
+        for i in 0..met.count() {
+            roots.push(improve([a, 2.0 * b, c, 2.0 * d, 2.0 * e, f], met.get(i)));
         }
     }
     roots
@@ -291,10 +310,8 @@ mod tests {
             for angle in angles {
                 let gap =
                     angles.iter().filter(|a| **a != angle).map(|a| (a - angle).abs()).fold(9.0, f64::min);
-                let near = roots
-                    .as_slice()
-                    .iter()
-                    .map(|[c, s]| (c - angle.cos()).abs().max((s - angle.sin()).abs()))
+                let near = (0..roots.count())
+                    .map(|i| (roots.get(i)[0] - angle.cos()).abs().max((roots.get(i)[1] - angle.sin()).abs()))
                     .fold(9.0, f64::min);
                 assert!(near < 1e-10 / gap.min(1.0).powi(2), "case {case}: {angles:?} {roots:?} {near:e}");
             }
@@ -303,10 +320,12 @@ mod tests {
 
     #[test]
     fn circle_at_its_edge_and_without_information() {
-        assert_eq!(circle(1.0, 0.0, 1.0 + 1e-12, 1e-9).as_slice(), [[1.0, 0.0]]);
-        assert_eq!(circle(1.0, 0.0, 1.1, 1e-9).len, 0);
-        assert!(circle(0.0, 0.0, 0.0, 1e-9).free);
-        assert_eq!(circle(f64::NAN, 0.0, 0.0, 1e-9).len, 0);
-        assert_eq!(quadratic(1.0, -3.0, 2.0, 0.0).as_slice(), [[2.0, 0.0], [1.0, 0.0]]);
+        let all = |r: Roots| (0..r.count()).map(|i| r.get(i)).collect::<Vec<_>>();
+        assert_eq!(all(circle(1.0, 0.0, 1.0 + 1e-12, 0.0)), [[1.0, 0.0]]);
+        assert_eq!(circle(1.0, 0.0, 1.0 + 1e-5, 1e-4).count(), 2);
+        assert_eq!(circle(1.0, 0.0, 1.1, 1e-9).count(), 0);
+        assert!(circle(0.0, 0.0, 0.0, 0.0).free && align(0.0, 0.0, 0.0).count() == 32);
+        assert_eq!(circle(f64::NAN, 0.0, 0.0, 1e-9).count(), 0);
+        assert_eq!(all(quadratic(1.0, -3.0, 2.0, 0.0)), [[2.0, 0.0], [1.0, 0.0]]);
     }
 }

@@ -36,6 +36,13 @@ fn block(program: &Program, stmts: &Block, live: &mut BTreeSet<Var>) -> Block {
                 }
                 Stmt::IfZero { value: *value, tolerance: *tolerance, then, otherwise }
             }
+            Stmt::Fallback { first, otherwise } => {
+                let (first, otherwise) = (block(program, first, live), block(program, otherwise, live));
+                if does_nothing(&first) && does_nothing(&otherwise) {
+                    continue;
+                }
+                Stmt::Fallback { first, otherwise }
+            }
             other => other.clone(),
         };
         exprs_of(&kept_stmt, |e| names_in(program, e, live));
@@ -79,7 +86,7 @@ impl Compact<'_> {
                     }
                     *body = self.block(body);
                 }
-                Stmt::IfZero { then, otherwise, .. } => {
+                Stmt::IfZero { then, otherwise, .. } | Stmt::Fallback { first: then, otherwise } => {
                     *then = self.block(then);
                     *otherwise = self.block(otherwise);
                 }

@@ -46,6 +46,10 @@ impl Fold<'_> {
                         out.push(Stmt::IfZero { value, tolerance, then, otherwise });
                     }
                 },
+                Stmt::Fallback { first, otherwise } => {
+                    let (first, otherwise) = (self.block(&first), self.block(&otherwise));
+                    out.push(Stmt::Fallback { first, otherwise });
+                }
                 other => out.push(other),
             }
         }

@@ -57,6 +57,10 @@ impl Hoist<'_> {
                     }
                     *body = self.nested(body, false);
                 }
+                Stmt::Fallback { first, otherwise } => {
+                    *first = self.nested(first, false);
+                    *otherwise = self.nested(otherwise, true);
+                }
                 Stmt::IfZero { then, otherwise, .. } => {
                     *then = self.nested(then, true);
                     *otherwise = self.nested(otherwise, true);

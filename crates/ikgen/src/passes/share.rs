@@ -110,7 +110,7 @@ fn place(
         let mut stmt = map_stmt(stmt, &mut |e| renamed(program, &mut out.exprs, e, &named, false));
         match &mut stmt {
             Stmt::ForEach { body, .. } => *body = place(program, out, body, &inner[i], number, &named),
-            Stmt::IfZero { then, otherwise, .. } => {
+            Stmt::IfZero { then, otherwise, .. } | Stmt::Fallback { first: then, otherwise } => {
                 *then = place(program, out, then, &inner[i], number, &named);
                 *otherwise = place(program, out, otherwise, &inner[i], number, &named);
             }

@@ -42,6 +42,7 @@ enum Item {
     Steps { from: u32, to: u32 },
     ForEach { kind: RootKind, args: [u16; 6], out: [u16; 2], outputs: u8, body: Vec<Item> },
     IfZero { value: u16, tolerance: f64, then: Vec<Item>, otherwise: Vec<Item> },
+    Fallback { first: Vec<Item>, otherwise: Vec<Item> },
     Emit { from: u32, to: u32 },
 }
 
@@ -169,10 +170,11 @@ impl Bytecode {
                 Item::ForEach { kind, args, out, outputs, body } => {
                     let roots = kind.solve(&args.map(|i| x[at(i)]), self.slack);
                     let before = accepted;
-                    for root in roots.as_slice() {
+                    for i in 0..roots.count() {
                         if roots.free && accepted > before {
                             break;
                         }
+                        let root = roots.get(i);
                         x[at(out[0])] = root[0];
                         if *outputs > 1 {
                             x[at(out[1])] = root[1];
@@ -183,6 +185,10 @@ impl Bytecode {
                 Item::IfZero { value, tolerance, then, otherwise } => {
                     let zero = x[at(*value)].abs() < *tolerance;
                     accepted += self.block(if zero { then } else { otherwise }, x, offer);
+                }
+                Item::Fallback { first, otherwise } => {
+                    let found = self.block(first, x, offer);
+                    accepted += if found > 0 { found } else { self.block(otherwise, x, offer) };
                 }
                 Item::Emit { from, to } => {
                     let mut candidate = [[0.0; 2]; MAX_JOINTS];
@@ -243,6 +249,9 @@ impl Translator<'_> {
                     self.flush(from, &mut items);
                     let (then, otherwise) = (self.block(then), self.block(otherwise));
                     Some(Item::IfZero { value, tolerance: *tolerance, then, otherwise })
+                }
+                Stmt::Fallback { first, otherwise } => {
+                    Some(Item::Fallback { first: self.block(first), otherwise: self.block(otherwise) })
                 }
                 Stmt::Emit(values) => {
                     let zero = self.constant(0);

@@ -41,14 +41,21 @@ impl Run<'_> {
                     let args: Vec<f64> = args.iter().map(|e| self.value(*e)).collect();
                     let roots = kind.solve(&args, self.program.slack);
                     let before = self.accepted;
-                    for root in roots.as_slice() {
+                    for i in 0..roots.count() {
                         if roots.free && self.accepted > before {
                             break;
                         }
-                        for (var, x) in out.iter().zip(root) {
-                            self.vars[var.0 as usize] = *x;
+                        for (var, x) in out.iter().zip(roots.get(i)) {
+                            self.vars[var.0 as usize] = x;
                         }
                         self.block(body);
+                    }
+                }
+                Stmt::Fallback { first, otherwise } => {
+                    let before = self.accepted;
+                    self.block(first);
+                    if self.accepted == before {
+                        self.block(otherwise);
                     }
                 }
                 Stmt::Emit(values) => {

@@ -185,8 +185,8 @@ pub(super) fn reach<'b>(
         }
     }
     let reached = p12 + w.turned(h2, q2);
-    let q1 =
-        b.align(names[0], reached.dot(goal) - h1.dot(reached) * h1.dot(goal), h1.dot(reached.cross(goal)));
+    let reached = reached - reached.along(h1);
+    let q1 = b.align(names[0], reached.dot(goal), h1.dot(reached.cross(goal)));
     [q1, q2, q3]
 }
 

@@ -11,6 +11,9 @@ use crate::generate::builder::{Builder, Move, Turn, Vector};
 use crate::generate::facts::{feet, foot, parallel};
 use crate::generate::problem::{Motion, Problem};
 
+/// Squared sine of the angle below which axis 6 may be taken as parallel to the three, where nothing else is found.
+const NEARLY_PARALLEL: f64 = 1e-6;
+
 pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String> {
     if problem.axes.iter().any(|a| a.motion != ChainMotion::Revolute) {
         return Err("a joint slides".into());
@@ -76,14 +79,12 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
     let (x, y) = (across_6.dot(to), -h6.dot(across_6.cross(to)));
     let rest = Rest { problem, b, names: &names, goal: &goal, q1, q5 };
     let aligned = from.cross(h6).square();
-    b.if_zero(
-        aligned,
-        1e-18,
-        || rest.aligned_wrist(),
+    b.fallback(
         || {
             let q6 = b.align(&names[5], x, y);
             rest.plane(q6);
         },
+        || b.if_zero(aligned, NEARLY_PARALLEL, || rest.aligned_wrist(), || {}),
     );
     Ok("axes 5 and 6 meeting".into())
 }
