@@ -64,8 +64,8 @@ fn shoulder_yaw() -> Part {
             Section::oval(0.0, [0.0, 0.112], [0.0840, 0.0350], 5.0),
         ],
         [0.0, 0.0],
-    )
-    .mesh();
+    );
+    let cheek = Loft { steps: 1, ..cheek }.mesh();
     let drums = along_y(&drum(0.0880, 0.0760, 0.1500, 0.008));
     let lids = along_y(&drum(0.0600, 0.1400, 0.1560, 0.003));
     Part::new("shoulder_yaw", [column.clone(), both_sides(&cheek), both_sides(&drums)])
@@ -91,17 +91,20 @@ fn shoulder_pitch() -> Part {
 }
 
 fn upper_arm() -> Part {
-    let tube = Loft::new(
-        [
-            Section::circle(0.1165, [0.0, 0.0], 0.0555),
-            Section::circle(0.170, [0.0, 0.0], 0.0550),
-            Section::circle(0.200, [0.0, 0.0], 0.0490),
-            Section::circle(0.400, [0.0, 0.0], 0.0470),
-            Section::oval(0.450, [0.012, 0.0], [0.0500, 0.0560], 2.4),
-            Section::oval(0.492, [0.026, 0.0], [0.0520, 0.0640], 3.5),
-        ],
-        [0.004, 0.006],
-    )
+    let tube = Loft {
+        steps: 2,
+        ..Loft::new(
+            [
+                Section::circle(0.1165, [0.0, 0.0], 0.0555),
+                Section::circle(0.170, [0.0, 0.0], 0.0550),
+                Section::circle(0.200, [0.0, 0.0], 0.0490),
+                Section::circle(0.400, [0.0, 0.0], 0.0470),
+                Section::oval(0.450, [0.012, 0.0], [0.0500, 0.0560], 2.4),
+                Section::oval(0.492, [0.026, 0.0], [0.0520, 0.0640], 3.5),
+            ],
+            [0.004, 0.006],
+        )
+    }
     .mesh();
     let cheek = Loft::new(
         [

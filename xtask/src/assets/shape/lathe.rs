@@ -43,7 +43,7 @@ fn rounded(profile: &[Corner]) -> Vec<Vector2<f64>> {
         let half_angle = libm::acos(before.dot(&after).clamp(-1.0, 1.0)) / 2.0;
         let from = at + before * (corner[2] / libm::tan(half_angle));
         let centre = at + (before + after).normalize() * (corner[2] / libm::sin(half_angle));
-        let turn = 2.0 * (FRAC_PI_2 - half_angle) * (before.perp(&after)).signum() * -1.0;
+        let turn = -2.0 * (FRAC_PI_2 - half_angle) * before.perp(&after).signum();
         let steps = if corner[2] > SMALL { 3 } else { 1 };
         for step in 0..=steps {
             let angle = turn * f64::from(step) / f64::from(steps);

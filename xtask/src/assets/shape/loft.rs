@@ -104,16 +104,15 @@ impl Loft {
         let i = s.windows(2).position(|pair| z <= pair[1].z).unwrap_or(s.len() - 2);
         let width = s[i + 1].z - s[i].z;
         let t = ((z - s[i].z) / width).clamp(0.0, 1.0);
-        let mut v = [0.0; 5];
-        for k in 0..5 {
+        let (t2, t3) = (t * t, t * t * t);
+        let v: [f64; 5] = std::array::from_fn(|k| {
             let (p, q) = (s[i].numbers()[k], s[i + 1].numbers()[k]);
             let (from, to) = (self.slope(i, k) * width, self.slope(i + 1, k) * width);
-            let (t2, t3) = (t * t, t * t * t);
-            v[k] = p * (2.0 * t3 - 3.0 * t2 + 1.0)
+            p * (2.0 * t3 - 3.0 * t2 + 1.0)
                 + from * (t3 - 2.0 * t2 + t)
                 + q * (3.0 * t2 - 2.0 * t3)
-                + to * (t3 - t2);
-        }
+                + to * (t3 - t2)
+        });
         Section { z, centre: [v[0], v[1]], half: [v[2], v[3]], power: v[4] }
     }
 
