@@ -60,19 +60,28 @@ pub fn load(
     path: &Path,
     options: &LoadOptions,
 ) -> (Option<RobotModel>, Diagnostics) {
-    let (root, mut found) = xml::load(system, sources, path);
-    let is_xacro = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xacro"));
-    let root = root.map(|root| {
-        if !is_xacro {
-            return root;
-        }
-        let (expanded, from_xacro) = xacro::expand(system, sources, path, &root, options);
-        found.extend(from_xacro);
-        expanded
-    });
+    let (mut root, mut found) = xml::load(system, sources, path);
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xacro")) {
+        root = root.and_then(|root| expanded(system, sources, path, &root, options, &mut found));
+    }
     let model = root.and_then(|root| lower(system, path, &root, options, &mut found));
     let model = model.filter(|_| !found.has_errors());
     (model, found)
+}
+
+/// The expansion of a xacro file; `None` when it failed, since what is missing then would be found again and again.
+fn expanded(
+    system: &dyn System,
+    sources: &mut Sources,
+    path: &Path,
+    root: &Element,
+    options: &LoadOptions,
+    found: &mut Diagnostics,
+) -> Option<Element> {
+    let (expanded, from_xacro) = xacro::expand(system, sources, path, root, options);
+    let failed = from_xacro.has_errors();
+    found.extend(from_xacro);
+    (!failed).then_some(expanded)
 }
 
 /// The model of a `<robot>` element.

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use super::expand::Expander;
 use super::scope::{Macro, Parameter, Property, Scope};
 use super::value::Value;
-use crate::diag::nearest;
+use crate::diag::{Severity, nearest};
 use crate::xml::{Element, Node};
 
 impl Expander<'_> {
@@ -29,7 +29,7 @@ impl Expander<'_> {
     /// The scope of a call: parameters bound to what the caller gives, seen from the caller.
     fn bound(&mut self, element: &Element, name: &str, called: &Macro) -> Option<Scope> {
         let mut scope = Scope::default();
-        let mut complete = true;
+        let errors_before = self.found.count(Severity::Error);
         let given = self.children(&element.children);
         let mut blocks = given.iter().filter_map(|node| match node {
             Node::Element(block) => Some(block),
@@ -50,7 +50,6 @@ impl Expander<'_> {
                 }),
             };
             if bound.is_none() {
-                complete = false;
                 let what = match parameter {
                     Parameter::Value { name, .. } => format!("a value for `{name}`"),
                     Parameter::Element(name) | Parameter::Content(name) => format!("the block `{name}`"),
@@ -69,7 +68,6 @@ impl Expander<'_> {
         for attribute in &element.attributes {
             let is_name_of_call = element.name == "xacro:call" && attribute.name == "macro";
             if !known.contains(attribute.name.as_str()) && !is_name_of_call {
-                complete = false;
                 let mut message = format!("macro `{name}` has no parameter `{}`", attribute.name);
                 if let Some(meant) = nearest(&attribute.name, known.iter().copied()) {
                     message += &format!("; did you mean `{meant}`?");
@@ -77,7 +75,7 @@ impl Expander<'_> {
                 self.error("R0250", attribute.span, message);
             }
         }
-        complete.then_some(scope)
+        (self.found.count(Severity::Error) == errors_before).then_some(scope)
     }
 
     /// The value of a parameter, or `None` when nothing gives it one.
@@ -101,7 +99,7 @@ impl Expander<'_> {
             Ok(value) => Some(value),
             Err(message) => {
                 self.error("R0251", span, message);
-                // Something is bound all the same: one fault, one finding.
+                // Told already; the call does not take place.
                 Some(Value::None)
             }
         }

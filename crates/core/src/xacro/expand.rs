@@ -34,6 +34,8 @@ pub(super) struct Expander<'a> {
     depth: usize,
     made: usize,
     stopped: bool,
+    /// Whether the file writes xacro's own elements without their prefix, as was allowed long ago.
+    unprefixed: bool,
     pub(super) found: Diagnostics,
 }
 
@@ -55,6 +57,7 @@ impl<'a> Expander<'a> {
             depth: 0,
             made: 0,
             stopped: false,
+            unprefixed: false,
             found: Diagnostics::new(),
         }
     }
@@ -62,7 +65,17 @@ impl<'a> Expander<'a> {
     pub(super) fn run(mut self, root: &Element) -> (Element, Diagnostics) {
         let copy = self.copied(root);
         let expanded = self.filled(copy, &root.children);
-        (expanded, self.found)
+        if self.found.iter().all(|d| d.code != "R0253") {
+            return (expanded, self.found);
+        }
+        // What a missing file would have defined is missing for that reason alone.
+        let mut told = Diagnostics::new();
+        for finding in self.found {
+            if finding.code != "R0252" && !finding.message.ends_with("is not defined") {
+                told.push(finding);
+            }
+        }
+        (expanded, told)
     }
 
     /// The file being read.
@@ -130,7 +143,7 @@ impl<'a> Expander<'a> {
             return;
         }
         self.depth += 1;
-        match element.name.strip_prefix("xacro:") {
+        match self.xacro_name(element) {
             None => {
                 let copy = self.copied(element);
                 out.push(Node::Element(self.filled(copy, &element.children)));
@@ -152,6 +165,29 @@ impl<'a> Expander<'a> {
             Some(name) => self.call(element, name, out),
         }
         self.depth -= 1;
+    }
+
+    /// The name of a xacro element without its prefix; `None` for an element of the description.
+    fn xacro_name<'e>(&mut self, element: &'e Element) -> Option<&'e str> {
+        if let Some(name) = element.name.strip_prefix("xacro:") {
+            return Some(name);
+        }
+        let name = element.name.as_str();
+        let is_definition = match name {
+            "property" | "macro" => element.attribute("name").is_some(),
+            "include" => element.attribute("filename").is_some(),
+            _ => false,
+        };
+        if is_definition && self.depth == 1 && !self.unprefixed {
+            self.unprefixed = true;
+            let message = format!("`<{name}>` is written without the prefix `xacro:`");
+            let hint = format!("write <xacro:{name}>; newer programs ignore the old spelling");
+            self.found
+                .push(Diagnostic::warning("R0250", message).at(element.span, "old spelling").hint(hint));
+        }
+        let is_known = ["property", "include", "macro", "insert_block", "if", "unless"].contains(&name)
+            || self.macros.contains_key(name);
+        (self.unprefixed && is_known).then_some(name)
     }
 
     /// The element with its attributes expanded, without children.

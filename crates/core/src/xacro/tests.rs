@@ -161,7 +161,6 @@ fn faults_are_reported_where_they_are_written() {
 <xacro:m/>
 <xacro:m a=\"1\" aa=\"2\"/>
 <xacro:mm/>
-<xacro:include filename=\"gone.xacro\"/>
 <d v=\"${1 +}\" w=\"${1/0}\" x=\"${sin('a')}\" y=\"${\" z=\"$(env HOME)\"/>
 <xacro:if value=\"perhaps\"/>
 <xacro:insert_block name=\"none\"/>
@@ -171,16 +170,35 @@ fn faults_are_reported_where_they_are_written() {
 main.xacro:4:1: error[R0250]: macro `m` is called without a value for `a`
 main.xacro:5:20: error[R0250]: macro `m` has no parameter `aa`; did you mean `a`?
 main.xacro:6:1: error[R0252]: there is no macro `mm`; did you mean `m`?
-main.xacro:7:26: error[R0253]: there is no file gone.xacro
-main.xacro:8:7: error[R0251]: the expression ends early
-main.xacro:8:18: error[R0251]: division by zero
-main.xacro:8:29: error[R0251]: `a` is not a number
-main.xacro:8:45: error[R0251]: `${` is never closed with `}`
-main.xacro:8:52: error[R0251]: `$(env ...)` is refused: a description must not depend on the environment
-main.xacro:9:18: error[R0251]: `perhaps` is neither true nor false
-main.xacro:10:1: error[R0252]: there is no block `none`
+main.xacro:7:7: error[R0251]: the expression ends early
+main.xacro:7:18: error[R0251]: division by zero
+main.xacro:7:29: error[R0251]: `a` is not a number
+main.xacro:7:45: error[R0251]: `${` is never closed with `}`
+main.xacro:7:52: error[R0251]: `$(env ...)` is refused: a description must not depend on the environment
+main.xacro:8:18: error[R0251]: `perhaps` is neither true nor false
+main.xacro:9:1: error[R0252]: there is no block `none`
 ";
     assert_eq!(found, expected);
+}
+
+#[test]
+fn what_a_missing_file_would_define_is_not_missed_again() {
+    let (_, found) = expanded(&[(
+        "main.xacro",
+        "<robot xmlns:xacro=\"x\"><xacro:include filename=\"gone.xacro\"/><xacro:m/><a v=\"${p}\"/></robot>",
+    )]);
+    assert_eq!(found, "main.xacro:1:50: error[R0253]: there is no file gone.xacro\n");
+}
+
+#[test]
+fn the_old_spelling_without_prefix_is_understood() {
+    let (text, found) = expanded(&[(
+        "main.xacro",
+        "<robot xmlns:xacro=\"x\"><property name=\"p\" value=\"2\"/><macro name=\"m\" params=\"a\"><b v=\"${a * p}\"/>\
+         </macro><m a=\"4\"/></robot>",
+    )]);
+    assert_eq!(text, "<b v=\"8\"></b>");
+    assert!(found.starts_with("main.xacro:1:24: warning[R0250]") && found.lines().count() == 1, "{found}");
 }
 
 #[test]

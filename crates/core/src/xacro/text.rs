@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use serde_saphyr::options::DuplicateKeyPolicy;
+
 use super::evaluate::{Names, evaluate};
 use super::expand::Expander;
 use super::scope::Property;
@@ -51,6 +53,11 @@ impl Expander<'_> {
                 .ok_or_else(|| format!("`${}` is never closed with `{close}`", &after[..1]))?;
             let inner = &after[1..length];
             let value = match close {
+                // Commands inside of an expression are carried out first, even in its quotes.
+                '}' if inner.contains("$(") => {
+                    let inner = self.value_in(inner, top)?.to_string();
+                    evaluate(&syntax::parse(&inner)?, &mut View { expander: self, top })?
+                }
                 '}' => evaluate(&syntax::parse(inner)?, &mut View { expander: self, top })?,
                 _ => self.command(inner, top)?,
             };
@@ -196,11 +203,14 @@ impl Names for View<'_, '_> {
         let path = self.expander.relative(path);
         let bytes = self.expander.system.read(&path).map_err(|e| format!("{}: {e}", path.display()))?;
         let text = String::from_utf8(bytes).map_err(|_| format!("{} is not UTF-8 text", path.display()))?;
-        let json: serde_json::Value = serde_saphyr::from_str(&with_angles_resolved(&text)).map_err(|e| {
-            let message = e.without_snippet().to_string();
+        // ROS's reader keeps the last of equal keys, and published descriptions rely on it.
+        let options = serde_saphyr::options! { duplicate_keys: DuplicateKeyPolicy::LastWins };
+        let text = with_angles_resolved(&text);
+        let json: Result<serde_json::Value, _> = serde_saphyr::from_str_with_options(&text, options);
+        json.map(|json| Value::from_json(&json)).map_err(|error| {
+            let message = error.without_snippet().to_string();
             format!("{}: {}", path.display(), message.lines().next().unwrap_or_default())
-        })?;
-        Ok(Value::from_json(&json))
+        })
     }
 }
 
