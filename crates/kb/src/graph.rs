@@ -88,6 +88,7 @@ pub struct Node {
     pub inputs: Vec<NodeIdx>,
     /// Values of the parameters, in the order of the kind's table.
     pub parameters: Vec<ParameterValue>,
+    #[cfg_attr(not(feature = "build"), expect(dead_code, reason = "only builds read it"))]
     pub(crate) work: Box<dyn Any + Send + Sync>,
 }
 

@@ -148,6 +148,7 @@ pub trait AnyKind: Send + Sync {
 }
 
 /// What a node of kind `K` is computed from.
+#[cfg_attr(not(feature = "build"), expect(dead_code, reason = "only builds read it"))]
 pub(crate) struct Work<K: Kind> {
     pub(crate) inputs: K::Inputs,
     pub(crate) parameters: K::Parameters,

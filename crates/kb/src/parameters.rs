@@ -57,6 +57,19 @@ pub enum ParameterError {
     },
 }
 
+/// The largest of ... 0.1, 0.2, 0.5, 1, 2, 5 ... that is not above `x`: steps for defaults that follow from a measure, so
+/// that they look familiar and small edits of the measure change nothing. Zero for what is not positive.
+pub fn round_step(x: f64) -> f64 {
+    if !(x.is_finite() && x > 0.0) {
+        return 0.0;
+    }
+    let exponent = libm::floor(libm::log10(x)) as i32;
+    // Decimal fractions as the parser reads them: the same everywhere, and what people type.
+    let step = |digit: u32, exponent: i32| format!("{digit}e{exponent}").parse().unwrap_or(0.0);
+    let steps = [(5, exponent), (2, exponent), (1, exponent), (5, exponent - 1)];
+    steps.into_iter().map(|(digit, exponent)| step(digit, exponent)).find(|s| *s <= x).unwrap_or(0.0)
+}
+
 /// A type that a parameter can have.
 pub trait ParameterType: Sized {
     /// The value as specifications write it.
@@ -267,6 +280,18 @@ mod tests {
             rolls: u32 [""] in 1..=8 = 4;
             /// Whether.
             both: bool = true;
+        }
+    }
+
+    #[test]
+    fn steps_are_familiar_numbers() {
+        for (x, expected) in
+            [(0.0242, 0.02), (0.05, 0.05), (0.1, 0.1), (0.0999, 0.05), (7.0, 5.0), (1e-7, 1e-7)]
+        {
+            assert_eq!(round_step(x), expected, "{x}");
+        }
+        for x in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(round_step(x), 0.0, "{x}");
         }
     }
 

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use robotc_core::ids::LinkIdx;
-use robotc_core::model::Geometry;
+use robotc_core::model::{Geometry, Origin};
+use robotc_core::spec::{RobotSpec, TaskSpec};
 use robotc_core::{Robot, Task};
 
 use crate::parameters::Given;
@@ -11,20 +12,39 @@ use crate::parameters::Given;
 /// A checked robot, perhaps with a task, and the parameters that were given.
 #[derive(Debug, Clone)]
 pub struct Project {
+    name: String,
     robot: Arc<Robot>,
+    tools: Vec<Origin>,
     task: Option<Arc<Task>>,
     given: Given,
 }
 
 impl Project {
     /// Everything that can be known about a robot alone.
-    pub fn of_robot(robot: Arc<Robot>, given: Given) -> Self {
-        Self { robot, task: None, given }
+    pub fn of_robot(spec: &RobotSpec) -> Self {
+        Self {
+            name: spec.name.clone(),
+            robot: spec.robot.clone(),
+            tools: spec.tools.clone(),
+            task: None,
+            given: spec.parameters.clone(),
+        }
     }
 
     /// Everything that a task needs, its robot included.
-    pub fn of_task(task: Arc<Task>, given: Given) -> Self {
-        Self { robot: task.robot.clone(), task: Some(task), given }
+    pub fn of_task(spec: &TaskSpec) -> Self {
+        let task = Some(Arc::new(spec.task.clone()));
+        Self { task, given: spec.parameters.clone(), ..Self::of_robot(&spec.robot) }
+    }
+
+    /// Name of the robot.
+    pub fn robot_name(&self) -> &str {
+        &self.name
+    }
+
+    /// `palm_from_tool` of a gripper as written.
+    pub fn tool(&self, gripper: usize) -> &Origin {
+        &self.tools[gripper]
     }
 
     /// The robot.
@@ -186,7 +206,7 @@ impl Subject for OfShape {
 }
 
 fn robot_label(project: &Project) -> String {
-    word(project.robot.model.name())
+    word(&project.name)
 }
 
 /// A name without the characters that separate words of a label or of a lock file.

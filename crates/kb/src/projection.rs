@@ -4,9 +4,9 @@
 
 use std::sync::Arc;
 
-use robotc_core::ids::{Idx, LinkIdx};
+use robotc_core::ids::{Idx, JointIdx, LinkIdx};
 use robotc_core::model::{
-    ChainError, Drive, DynamicLimits, Geometry, JointMotion, RobotBuilder, RobotModel, Shape, TriMesh,
+    ChainError, Drive, DynamicLimits, Geometry, Joint, JointMotion, RobotBuilder, RobotModel, Shape, TriMesh,
 };
 
 use crate::key::{Canonical, KeyHasher};
@@ -35,7 +35,8 @@ impl Limits {
 
 /// The links and joints of a robot, or of a chain of it, as a robot without shapes, masses, speeds and names.
 ///
-/// Links are called `l0`, `l1` ... and joints `j0`, `j1` ..., by position.
+/// Links are called `l0`, `l1` ... by position; joints `q1`, `q2` ... where they have a degree of freedom of their own, and
+/// `j0`, `j1` ... by position where they do not.
 #[derive(Debug, Clone)]
 pub struct Mechanism {
     model: Arc<RobotModel>,
@@ -84,11 +85,12 @@ impl Mechanism {
                 Some((index, joint, link_name(joint.parent)?, link_name(joint.child)?))
             })
             .collect();
-        let joint_name = |dof| {
-            let target = model.dofs()[dof].joint;
-            kept.iter().position(|&(index, ..)| index == target).map(|i| format!("j{i}"))
-        };
-        for (i, (_, joint, parent, child)) in kept.iter().enumerate() {
+        let has_dof = |joint: &Joint| matches!(joint.drive, Drive::Dof(_));
+        let driving = kept.iter().filter(|(_, joint, ..)| has_dof(joint)).map(|&(index, ..)| index);
+        let driving: Vec<JointIdx> = driving.collect();
+        let joint_name =
+            |index: JointIdx| driving.iter().position(|&j| j == index).map(|i| format!("q{}", i + 1));
+        for (i, (index, joint, parent, child)) in kept.iter().enumerate() {
             let mut bounds = (f64::NEG_INFINITY, f64::INFINITY, joint.motion == JointMotion::Revolute);
             let mut mimic = None;
             match joint.drive {
@@ -100,25 +102,18 @@ impl Mechanism {
                     }
                 }
                 Drive::Mimic { dof, multiplier, offset } => {
-                    let target = joint_name(dof).ok_or_else(|| ChainError::MimicOutside {
-                        joint: joint.name.clone(),
-                        target: model.dofs()[dof].name.clone(),
-                    })?;
+                    let target =
+                        joint_name(model.dofs()[dof].joint).ok_or_else(|| ChainError::MimicOutside {
+                            joint: joint.name.clone(),
+                            target: model.dofs()[dof].name.clone(),
+                        })?;
                     mimic = Some((target, multiplier, offset));
                 }
             }
             let (lower, upper, continuous) = bounds;
             let limits = (lower, upper, continuous, DynamicLimits::DEFAULT);
-            builder.moving(
-                &format!("j{i}"),
-                joint.motion,
-                parent,
-                child,
-                joint.origin,
-                joint.axis,
-                limits,
-                mimic,
-            );
+            let name = joint_name(*index).unwrap_or_else(|| format!("j{i}"));
+            builder.moving(&name, joint.motion, parent, child, joint.origin, joint.axis, limits, mimic);
         }
         let joint_names = kept.iter().map(|(_, joint, ..)| joint.name.clone()).collect();
         let model = builder.build().expect("connected links of a robot are a robot");

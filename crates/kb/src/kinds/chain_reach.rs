@@ -1,6 +1,6 @@
 //! How far the tip of an arm can get: a sphere that holds every position it can have.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 
 use crate::codec;
 use crate::graph::{PlanError, Planner};
@@ -72,26 +72,9 @@ impl Kind for ChainReach {
     }
 }
 
-/// A line through `anchor` along the unit vector `direction`.
-struct Line {
-    anchor: Point3<f64>,
-    direction: Vector3<f64>,
-}
-
-impl Line {
-    fn at(&self, t: f64) -> Point3<f64> {
-        self.anchor + self.direction * t
-    }
-
-    /// Where on the line the foot of `point` lies, and how far `point` is from it.
-    fn foot(&self, point: &Point3<f64>) -> (f64, f64) {
-        let t = (point - self.anchor).dot(&self.direction);
-        (t, (point - self.at(t)).norm())
-    }
-}
-
 #[cfg(feature = "build")]
 mod build {
+    use nalgebra::Vector3;
     use robotc_core::ids::LinkIdx;
     use robotc_core::model::{ChainMotion, Configuration, Kinematics, SerialChain};
     use robotc_core::{Pose, ids::Idx};
@@ -161,6 +144,24 @@ mod build {
                 }
             }
             Ok(())
+        }
+    }
+
+    /// A line through `anchor` along the unit vector `direction`.
+    struct Line {
+        anchor: Point3<f64>,
+        direction: Vector3<f64>,
+    }
+
+    impl Line {
+        fn at(&self, t: f64) -> Point3<f64> {
+            self.anchor + self.direction * t
+        }
+
+        /// Where on the line the foot of `point` lies, and how far `point` is from it.
+        fn foot(&self, point: &Point3<f64>) -> (f64, f64) {
+            let t = (point - self.anchor).dot(&self.direction);
+            (t, (point - self.at(t)).norm())
         }
     }
 

@@ -1,15 +1,29 @@
 //! The artefact kinds: one file each, one line each in [`ALL`].
 
 mod chain_reach;
+mod convex_parts;
+mod ik_solver;
+mod link_statistics;
+mod self_collision_pairs;
 
 pub use chain_reach::{ChainReach, ReachSphere};
+pub use convex_parts::{ConvexParts, ConvexPartsParameters};
+pub use ik_solver::{IkParameters, IkSolver};
+pub use link_statistics::{JointStatistics, LinkStatistics, StatisticsParameters};
+pub use self_collision_pairs::{PairParameters, PairState, PairTable, SelfCollisionPairs};
 
 use robotc_core::spec::{KindParameters, ParameterTable};
 
 use crate::kind::{AnyKind, Entry};
 
 /// All kinds, in the order in which documentation lists them.
-pub const ALL: &[&dyn AnyKind] = &[&Entry::<ChainReach>::new()];
+pub const ALL: &[&dyn AnyKind] = &[
+    &Entry::<ChainReach>::new(),
+    &Entry::<ConvexParts>::new(),
+    &Entry::<IkSolver>::new(),
+    &Entry::<LinkStatistics>::new(),
+    &Entry::<SelfCollisionPairs>::new(),
+];
 
 /// The kind of this name.
 pub fn find(name: &str) -> Option<&'static dyn AnyKind> {

@@ -8,6 +8,7 @@ use robotc_core::model::{
     Configuration, DynamicLimits, Geometry, Inertial, JointMotion, Origin, RobotBuilder, Shape,
 };
 use robotc_core::robot::{Base, Preshape};
+use robotc_core::spec::{RobotSpec, TaskSpec};
 use robotc_core::task::{Destination, Goal, Object, Obstacle};
 use robotc_core::{Arm, Gripper, Pose, Robot, Task};
 use robotc_kb::{Given, Project};
@@ -17,7 +18,7 @@ use robotc_kb::{Given, Project};
 pub(crate) struct Spec {
     pub(crate) robot_name: String,
     pub(crate) links: Vec<LinkSpec>,
-    pub(crate) tool: Pose,
+    pub(crate) tool: Origin,
     pub(crate) object: Object,
     pub(crate) obstacle: Obstacle,
     pub(crate) given: Given,
@@ -112,7 +113,7 @@ pub(crate) fn spec() -> Spec {
     Spec {
         robot_name: "arm".into(),
         links: specs,
-        tool: Pose::translation(0.0, 0.0, 0.14),
+        tool: Origin { xyz: [0.0, 0.0, 0.14], rpy: [0.0; 3] },
         object: Object {
             name: "mug".into(),
             geometry: Arc::new(vec![cuboid([0.06, 0.06, 0.09], [0.0; 3])]),
@@ -162,7 +163,7 @@ impl Spec {
             grippers: vec![Gripper {
                 name: "jaws".into(),
                 palm: LinkIdx::new(6),
-                palm_from_tool: self.tool,
+                palm_from_tool: self.tool.pose(),
                 approach_in_tool: Vector3::z_axis(),
                 dofs: vec![dof(6)],
                 closing: vec![-1.0],
@@ -177,7 +178,7 @@ impl Spec {
         });
         let task = Task {
             name: "tidy".into(),
-            robot,
+            robot: robot.clone(),
             arm: 0,
             world_from_robot: Pose::identity(),
             start: Configuration::neutral(&model),
@@ -193,6 +194,36 @@ impl Spec {
             }],
             seed: 1,
         };
-        Project::of_task(Arc::new(task), self.given.clone())
+        let robot = RobotSpec {
+            name: self.robot_name.clone(),
+            robot,
+            tools: vec![self.tool],
+            parameters: Given::default(),
+            path: "arm.robot.toml".into(),
+            description: "arm.urdf".into(),
+        };
+        Project::of_task(&TaskSpec {
+            task,
+            robot,
+            parameters: self.given.clone(),
+            path: "tidy.task.toml".into(),
+        })
     }
+}
+
+/// Compares with the file `tests/golden/NAME`; with `BLESS=1` in the environment, writes it instead.
+#[allow(dead_code, reason = "not every test file has golden files")]
+pub(crate) fn golden(name: &str, text: &str) {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name);
+    if std::env::var_os("BLESS").is_some() {
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        std::fs::write(&path, text).expect("a file");
+    }
+    let expected = std::fs::read_to_string(&path).unwrap_or_default();
+    assert_eq!(
+        text,
+        expected,
+        "artefacts differ from {}: raise ALGORITHM or FORMAT of the kind, then bless with BLESS=1",
+        path.display()
+    );
 }

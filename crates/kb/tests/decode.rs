@@ -1,0 +1,54 @@
+//! Decoders of all kinds under hostile bytes: any bytes give an artefact or an error.
+
+mod support;
+
+use std::sync::Arc;
+
+use robotc_core::Seed;
+use robotc_kb::{Graph, Store, compile, kinds};
+
+#[test]
+fn decoders_are_total_and_canonical() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let graph = Arc::new(Graph::plan(&support::spec().project()).expect("a graph"));
+    let store = Arc::new(Store::open(folder.path()).expect("a store"));
+    assert!(compile(&graph, &store, &()).expect("it works").complete());
+    let listed = store.list().expect("a list");
+    for kind in kinds::ALL {
+        let info = kind.info();
+        let contents: Vec<Vec<u8>> = listed
+            .iter()
+            .filter(|artefact| artefact.kind == info.name)
+            .map(|artefact| store.read(&artefact.content).expect("it is whole"))
+            .collect();
+        assert!(!contents.is_empty(), "the test project has no {}", info.name);
+        let mut rng = Seed::new(1).split(info.name).rng();
+        for bytes in &contents {
+            assert!(kind.recode(bytes).as_ref() == Ok(bytes), "{} is not canonical", info.name);
+            kind.summary(bytes).expect("it decodes");
+            for _ in 0..400 {
+                let bad = mutated(bytes, &mut rng);
+                if let Ok(again) = kind.recode(&bad) {
+                    // What is accepted has one stored form from then on.
+                    assert!(kind.recode(&again).as_ref() == Ok(&again), "{}", info.name);
+                }
+            }
+        }
+    }
+}
+
+/// The bytes with a few of them changed, inserted, removed or cut off.
+fn mutated(bytes: &[u8], rng: &mut robotc_core::rng::Rng) -> Vec<u8> {
+    let mut bad = bytes.to_vec();
+    for _ in 0..=rng.below(4) {
+        let at = rng.below(bad.len() + 1);
+        let byte = [0, 1, 0x7f, 0x80, 0xff, rng.bits() as u8][rng.below(6)];
+        match rng.below(4) {
+            0 if at < bad.len() => bad[at] = byte,
+            1 => bad.insert(at, byte),
+            2 if at < bad.len() => drop(bad.remove(at)),
+            _ => bad.truncate(at),
+        }
+    }
+    bad
+}
