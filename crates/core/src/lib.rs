@@ -21,6 +21,7 @@ pub mod system;
 pub mod task;
 pub mod trajectory;
 pub mod urdf;
+pub mod world;
 mod xacro;
 mod xml;
 
@@ -32,6 +33,7 @@ pub use robot::{Arm, Gripper, Robot};
 pub use system::System;
 pub use task::Task;
 pub use trajectory::Trajectory;
+pub use world::World;
 
 /// Double-precision rigid transform, the only pose type of public signatures.
 pub type Pose = nalgebra::Isometry3<f64>;
