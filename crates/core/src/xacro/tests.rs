@@ -187,7 +187,7 @@ fn what_a_missing_file_would_define_is_not_missed_again() {
         "main.xacro",
         "<robot xmlns:xacro=\"x\"><xacro:include filename=\"gone.xacro\"/><xacro:m/><a v=\"${p}\"/></robot>",
     )]);
-    assert_eq!(found, "main.xacro:1:50: error[R0253]: there is no file gone.xacro\n");
+    assert_eq!(found, "main.xacro:1:49: error[R0253]: there is no file gone.xacro\n");
 }
 
 #[test]
