@@ -24,6 +24,32 @@ pub(super) struct Hull {
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
+impl Hull {
+    /// Volume, cubic metres.
+    pub(super) fn volume(&self) -> f64 {
+        let Some(&origin) = self.points.first() else { return 0.0 };
+        let six_fold: f64 = self
+            .triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|i| self.points[i as usize] - origin);
+                a.cross(&b).dot(&c)
+            })
+            .sum();
+        six_fold / 6.0
+    }
+
+    /// Largest height of the point above a face; not positive inside.
+    pub(super) fn height(&self, point: &Point3<f64>) -> f64 {
+        let above = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| self.points[i as usize]);
+            let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
+            Some(normal.dot(&(point - a)))
+        };
+        self.triangles.iter().filter_map(above).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
 /// Flat sets are given this thickness, as a fraction of their size: far above rounding, far below anything seen.
 const MIN_THICKNESS: f64 = 1e-5;
 

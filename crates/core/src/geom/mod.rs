@@ -6,6 +6,7 @@
 
 mod aabb;
 mod bvh;
+mod decompose;
 mod gjk;
 mod hull;
 mod mesh_index;
@@ -14,13 +15,18 @@ mod parts;
 mod penetration;
 mod primitive;
 mod query;
+mod quick_hull;
+mod reduce;
+mod shape;
 mod surface;
 
 pub use aabb::Aabb;
+pub use decompose::{DecomposeOptions, decompose};
 pub use hull::HullError;
 pub use mesh_index::{MeshIndex, NearestPoint, RayHit};
 pub use part::{ConvexPart, PartError, Plane};
 pub use parts::ConvexParts;
 pub use primitive::{box_part, capsule_part, cylinder_part, sphere_part};
 pub use query::{Contact, Distance, contact, distance, intersects, within};
+pub use shape::{parts_of, parts_of_shape};
 pub use surface::surface;

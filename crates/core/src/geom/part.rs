@@ -59,6 +59,7 @@ struct Data {
     bounds: Aabb,
     centre: Point3<f64>,
     radius: f64,
+    volume: f64,
 }
 
 /// A convex polytope with volume: points, outward triangles and face planes, in metres, in the frame of whatever
@@ -109,13 +110,14 @@ impl ConvexPart {
                 return Err(PartError::NotConvex);
             }
         }
-        if signed_volume(&hull) <= 0.0 {
+        if hull.volume() <= 0.0 {
             return Err(PartError::NotConvex);
         }
         Ok(Self::from_hull(hull))
     }
 
     pub(super) fn from_hull(hull: Hull) -> Self {
+        let volume = hull.volume();
         let Hull { points, triangles } = hull;
         let bounds = Aabb::of_points(&points).expect("a hull has points");
         let centre = bounds.centre();
@@ -123,7 +125,7 @@ impl ConvexPart {
         let normals = face_normals(&points, &triangles);
         let planes = face_planes(&points, &normals);
         let edges = sharp_edges(&triangles, &normals);
-        Self(Arc::new(Data { points, triangles, planes, edges, bounds, centre, radius }))
+        Self(Arc::new(Data { points, triangles, planes, edges, bounds, centre, radius, volume }))
     }
 
     /// Corners, each once.
@@ -199,24 +201,8 @@ impl ConvexPart {
 
     /// Volume, cubic metres.
     pub fn volume(&self) -> f64 {
-        signed_volume_of(&self.0.points, &self.0.triangles)
+        self.0.volume
     }
-}
-
-fn signed_volume(hull: &Hull) -> f64 {
-    signed_volume_of(&hull.points, &hull.triangles)
-}
-
-fn signed_volume_of(points: &[Point3<f64>], triangles: &[[u32; 3]]) -> f64 {
-    let Some(&origin) = points.first() else { return 0.0 };
-    let six_fold: f64 = triangles
-        .iter()
-        .map(|t| {
-            let [a, b, c] = t.map(|i| points[i as usize] - origin);
-            a.cross(&b).dot(&c)
-        })
-        .sum();
-    six_fold / 6.0
 }
 
 /// Unit normals of the triangles; a sliver without area takes the normal of a neighbour it shares an edge with.
