@@ -4,10 +4,11 @@
 
 use std::sync::Arc;
 
-use robotc_core::ids::{Idx, JointIdx, LinkIdx};
+use robotc_core::ids::{DofIdx, Idx, JointIdx, LinkIdx};
 use robotc_core::model::{
     ChainError, Drive, DynamicLimits, Geometry, Joint, JointMotion, RobotBuilder, RobotModel, Shape, TriMesh,
 };
+use robotc_core::robot::Gripper;
 
 use crate::key::{Canonical, KeyHasher};
 use crate::record::Parts;
@@ -69,6 +70,35 @@ impl Mechanism {
         let links: Vec<LinkIdx> =
             std::iter::once(base).chain(joints.iter().map(|&j| model.joints()[j].child)).collect();
         Self::of(model, &links, limits)
+    }
+
+    /// The links of a gripper: those rigid with its palm, and all below it. The gripper comes back with the indices that
+    /// its links and degrees of freedom have there.
+    pub fn hand(model: &RobotModel, gripper: &Gripper) -> Result<(Self, Gripper, Vec<LinkIdx>), ChainError> {
+        let mut links = model.rigid_group(gripper.palm);
+        links.extend(model.subtree(gripper.palm));
+        links.sort();
+        links.dedup();
+        let hand = Self::of(model, &links, Limits::Kept)?;
+        let link = |wanted: LinkIdx| links.iter().position(|&l| l == wanted).map(LinkIdx::new);
+        let outside = |name: &str| ChainError::NotBelow {
+            base: model.links()[gripper.palm].name.clone(),
+            tip: name.to_owned(),
+        };
+        let dof = |wanted: DofIdx| {
+            let name = &model.dofs()[wanted].name;
+            let joint = hand.joint_names.iter().position(|joint| joint == name).map(JointIdx::new);
+            joint.and_then(|j| hand.model.driving_dof(j)).ok_or_else(|| outside(name))
+        };
+        let finger = |wanted: LinkIdx| link(wanted).ok_or_else(|| outside(&model.links()[wanted].name));
+        let gripper = Gripper {
+            name: String::new(),
+            palm: link(gripper.palm).expect("a palm is rigid with itself"),
+            fingers: gripper.fingers.iter().map(|&l| finger(l)).collect::<Result<_, _>>()?,
+            dofs: gripper.dofs.iter().map(|&d| dof(d)).collect::<Result<_, _>>()?,
+            ..gripper.clone()
+        };
+        Ok((hand, gripper, links))
     }
 
     /// The given links with the joints between them.
@@ -169,6 +199,11 @@ impl Shapes {
             element
         };
         Self { elements: elements.iter().map(plain).collect() }
+    }
+
+    /// All elements as one mesh.
+    pub fn surface(&self) -> TriMesh {
+        robotc_core::geom::surface(&self.elements)
     }
 
     /// The elements.

@@ -45,7 +45,7 @@ const EDITS: &[Edit] = &[
     Edit {
         name: "limit of a joint",
         apply: |s| joint(s, 2).limits.1 = 1.5,
-        rebuilt: &["link_statistics arm", "self_collision_pairs arm"],
+        rebuilt: &["link_statistics arm", "reachability arm/main", "self_collision_pairs arm"],
         because: "changed: limits of lift",
     },
     Edit {
@@ -55,6 +55,7 @@ const EDITS: &[Edit] = &[
             "chain_reach arm/main",
             "ik_solver arm/main",
             "link_statistics arm",
+            "reachability arm/main",
             "self_collision_pairs arm",
         ],
         because: "changed: joint of bend",
@@ -62,13 +63,23 @@ const EDITS: &[Edit] = &[
     Edit {
         name: "a finger's joint",
         apply: |s| joint(s, 7).origin.xyz[2] = 0.115,
-        rebuilt: &["link_statistics arm", "self_collision_pairs arm"],
+        rebuilt: &[
+            "grasp_set arm/jaws+tidy/mug",
+            "link_statistics arm",
+            "reachability arm/main",
+            "self_collision_pairs arm",
+        ],
         because: "changed: joint of slide",
     },
     Edit {
         name: "collision shape of a link",
         apply: |s| s.links[3].collision = support::cuboid([0.06, 0.06, 0.2], [0.0, 0.0, 0.1]),
-        rebuilt: &["convex_parts arm/fore", "link_statistics arm", "self_collision_pairs arm"],
+        rebuilt: &[
+            "convex_parts arm/fore",
+            "link_statistics arm",
+            "reachability arm/main",
+            "self_collision_pairs arm",
+        ],
         because: "changed: shape of arm/fore",
     },
     Edit {
@@ -85,8 +96,20 @@ const EDITS: &[Edit] = &[
         apply: |s| {
             s.object.geometry = Arc::new(vec![support::cuboid([0.05, 0.05, 0.1], [0.0; 3])]);
         },
-        rebuilt: &["convex_parts tidy/mug"],
+        rebuilt: &["convex_parts tidy/mug", "grasp_set arm/jaws+tidy/mug"],
         because: "changed: shape of tidy/mug",
+    },
+    Edit {
+        name: "friction of the object",
+        apply: |s| s.object.friction = 0.8,
+        rebuilt: &["grasp_set arm/jaws+tidy/mug"],
+        because: "changed: parameter friction 0.5 -> 0.8",
+    },
+    Edit {
+        name: "grasp parameter",
+        apply: |s| s.given.set("grasp_set", "rolls", ParameterValue::Integer(4)),
+        rebuilt: &["grasp_set arm/jaws+tidy/mug"],
+        because: "changed: parameter rolls 8 -> 4",
     },
     Edit { name: "mass of the object", apply: |s| s.object.mass = 1.0, rebuilt: &[], because: "" },
     Edit {
@@ -219,7 +242,12 @@ fn recipes_are_known_before_anything_is_built_and_reach_through_inputs() {
         .filter(|(a, b)| a.recipe != b.recipe)
         .map(|(a, _)| a.title())
         .collect();
-    let expected = ["convex_parts of arm/fore", "link_statistics of arm", "self_collision_pairs of arm"];
+    let expected = [
+        "convex_parts of arm/fore",
+        "link_statistics of arm",
+        "self_collision_pairs of arm",
+        "reachability of arm/main",
+    ];
     assert_eq!(changed, expected);
     let dot = before.to_dot();
     assert_eq!(dot.matches("label=").count(), before.nodes().len());

@@ -2,14 +2,18 @@
 
 mod chain_reach;
 mod convex_parts;
+mod grasp_set;
 mod ik_solver;
 mod link_statistics;
+mod reachability;
 mod self_collision_pairs;
 
 pub use chain_reach::{ChainReach, ReachSphere};
 pub use convex_parts::{ConvexParts, ConvexPartsParameters};
+pub use grasp_set::{GraspParameters, GraspSet};
 pub use ik_solver::{IkParameters, IkSolver};
 pub use link_statistics::{JointStatistics, LinkStatistics, StatisticsParameters};
+pub use reachability::{Reachability, ReachabilityMap, ReachabilityParameters};
 pub use self_collision_pairs::{PairParameters, PairState, PairTable, SelfCollisionPairs};
 
 use robotc_core::spec::{KindParameters, ParameterTable};
@@ -23,6 +27,8 @@ pub const ALL: &[&dyn AnyKind] = &[
     &Entry::<IkSolver>::new(),
     &Entry::<LinkStatistics>::new(),
     &Entry::<SelfCollisionPairs>::new(),
+    &Entry::<Reachability>::new(),
+    &Entry::<GraspSet>::new(),
 ];
 
 /// The kind of this name.

@@ -15,28 +15,28 @@ use nalgebra::{Matrix6, Point3, Unit, Vector3, Vector6};
 
 /// A point where the hand presses on the object.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PointContact {
+pub(super) struct PointContact {
     /// Where, in the object frame, metres.
-    pub point: Point3<f64>,
+    pub(super) point: Point3<f64>,
     /// Direction of the pressing force: into the object.
-    pub inward: Unit<Vector3<f64>>,
+    pub(super) inward: Unit<Vector3<f64>>,
 }
 
 /// What a contact can do.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContactModel {
+pub(super) struct ContactModel {
     /// Coulomb friction coefficient.
-    pub friction: f64,
+    pub(super) friction: f64,
     /// Edges of the pyramid that stands for the friction cone; at least 3.
-    pub cone_edges: usize,
+    pub(super) cone_edges: usize,
     /// Torques are taken about this point of the object frame: its centre of mass.
-    pub centre: Point3<f64>,
+    pub(super) centre: Point3<f64>,
     /// Torques are divided by this length, metres: the largest distance of the object's surface from `centre`.
-    pub length: f64,
+    pub(super) length: f64,
 }
 
 /// The wrenches of all pyramid edges of all contacts: unit normal force plus friction, and its scaled torque.
-pub fn wrenches(contacts: &[PointContact], model: &ContactModel) -> Vec<Vector6<f64>> {
+pub(super) fn wrenches(contacts: &[PointContact], model: &ContactModel) -> Vec<Vector6<f64>> {
     let mut out = Vec::with_capacity(contacts.len() * model.cone_edges);
     for contact in contacts {
         let normal = contact.inward.into_inner();
@@ -71,7 +71,7 @@ const MOST_STEPS: usize = 2_000;
 /// Ferrari-Canny epsilon of the convex hull of `points`: positive when the origin lies strictly inside (force
 /// closure), zero or negative when it does not (then only the sign has a meaning), and `None` when the points do not
 /// span six dimensions, as with two hard point contacts.
-pub fn epsilon(points: &[Vector6<f64>]) -> Option<f64> {
+pub(super) fn epsilon(points: &[Vector6<f64>]) -> Option<f64> {
     let simplex = initial_simplex(points)?;
     let mut polytope = Polytope::new(points, &simplex)?;
     let mut bound = f64::NEG_INFINITY;

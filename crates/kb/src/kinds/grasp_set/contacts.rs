@@ -9,15 +9,15 @@ use super::surface::SurfacePoint;
 
 /// What counts as touching.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PatchOptions {
+pub(super) struct PatchOptions {
     /// Surface points this close to a finger are touched, metres: how far pad and object give way.
-    pub depth: f64,
+    pub(super) depth: f64,
     /// Most points that stand for one finger's patch.
-    pub points: usize,
+    pub(super) points: usize,
 }
 
 /// Contacts of one finger link: surface points of the object within reach of its parts, thinned to those far apart.
-pub fn patch(
+pub(super) fn patch(
     parts: &ConvexParts,
     object_from_link: &Pose,
     surface: &[SurfacePoint],

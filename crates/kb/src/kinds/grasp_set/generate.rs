@@ -13,54 +13,54 @@ use super::surface::{ApproachOptions, SurfacePoint, approaches, sample};
 
 /// How a set is made.
 #[derive(Debug, Clone, PartialEq)]
-pub struct GenerateOptions {
+pub(super) struct GenerateOptions {
     /// Which approaches are tried.
-    pub approaches: ApproachOptions,
+    pub(super) approaches: ApproachOptions,
     /// What counts as touching.
-    pub patch: PatchOptions,
+    pub(super) patch: PatchOptions,
     /// Distance of the surface points that contacts are made of, metres.
-    pub surface_spacing: f64,
+    pub(super) surface_spacing: f64,
     /// Coulomb friction.
-    pub friction: f64,
+    pub(super) friction: f64,
     /// Edges of the pyramid that stands for a friction cone.
-    pub cone_edges: usize,
+    pub(super) cone_edges: usize,
     /// Smallest epsilon of a grasp that is kept.
-    pub least_epsilon: f64,
+    pub(super) least_epsilon: f64,
     /// Most grasps that are kept, best first.
-    pub most_grasps: usize,
+    pub(super) most_grasps: usize,
 }
 
 /// What became of the approaches.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Counts {
+pub(super) struct Counts {
     /// Approaches tried.
-    pub tried: usize,
+    pub(super) tried: usize,
     /// The hand passed by.
-    pub no_touch: usize,
+    pub(super) no_touch: usize,
     /// Fewer than two fingers touched.
-    pub few_fingers: usize,
+    pub(super) few_fingers: usize,
     /// The palm touched after the hand was centred.
-    pub palm: usize,
+    pub(super) palm: usize,
     /// The contacts do not close, or too weakly.
-    pub no_closure: usize,
+    pub(super) no_closure: usize,
     /// Force closure.
-    pub closed: usize,
+    pub(super) closed: usize,
 }
 
 /// Everything that trying an approach needs.
-pub struct Generator<'a> {
+pub(super) struct Generator<'a> {
     hand: &'a Hand<'a>,
     target: Target<'a>,
     surface: Vec<SurfacePoint>,
     contact: ContactModel,
     options: &'a GenerateOptions,
     /// The approaches to try.
-    pub approaches: Vec<Approach>,
+    pub(super) approaches: Vec<Approach>,
 }
 
 /// What became of one approach.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Trial {
+pub(super) enum Trial {
     /// Force closure.
     Grasp(Box<Grasp>),
     /// The contacts do not close, or too weakly.
@@ -71,7 +71,7 @@ pub enum Trial {
 
 impl<'a> Generator<'a> {
     /// Prepares the trials. Mesh, parts and centre of mass are in the object frame. `None` when the mesh is empty.
-    pub fn new(
+    pub(super) fn new(
         hand: &'a Hand<'a>,
         mesh: &TriMesh,
         parts: &'a ConvexParts,
@@ -94,7 +94,7 @@ impl<'a> Generator<'a> {
     }
 
     /// Runs the grasp strategy along one approach and judges its contacts.
-    pub fn attempt(&self, approach: &Approach) -> Trial {
+    pub(super) fn attempt(&self, approach: &Approach) -> Trial {
         let closed = match close_on(self.hand, &self.target, approach) {
             Ok(closed) => closed,
             Err(miss) => return Trial::Miss(miss),
@@ -121,7 +121,7 @@ impl<'a> Generator<'a> {
     }
 
     /// The distinct grasps, best first, and what became of the rest; `trials` in the order of the approaches.
-    pub fn collect(&self, trials: Vec<Trial>) -> (Vec<Grasp>, Counts) {
+    pub(super) fn collect(&self, trials: Vec<Trial>) -> (Vec<Grasp>, Counts) {
         let mut counts = Counts { tried: trials.len(), ..Counts::default() };
         let mut grasps = Vec::new();
         for trial in trials {
@@ -144,7 +144,7 @@ impl<'a> Generator<'a> {
 }
 
 /// Contact patches of all fingers of a closed hand.
-pub fn contacts_of(
+pub(super) fn contacts_of(
     hand: &Hand,
     closed: &ClosedHand,
     surface: &[SurfacePoint],

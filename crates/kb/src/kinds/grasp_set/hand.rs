@@ -7,23 +7,23 @@ use robotc_core::model::{Drive, Kinematics};
 use robotc_core::robot::Gripper;
 
 /// A part of the hand that moves as one.
-pub struct HandLink<'a> {
+pub(super) struct HandLink<'a> {
     /// The link.
-    pub link: LinkIdx,
+    pub(super) link: LinkIdx,
     /// Its convex parts, in the link frame.
-    pub parts: &'a ConvexParts,
+    pub(super) parts: &'a ConvexParts,
     /// Degrees of freedom of the gripper that move it, positions in [`Gripper::dofs`]; empty: rigid with the palm.
-    pub moved_by: Vec<usize>,
+    pub(super) moved_by: Vec<usize>,
     /// Whether it may touch the object.
-    pub is_finger: bool,
+    pub(super) is_finger: bool,
 }
 
 /// The links rigid with or below the palm that have geometry.
-pub struct Hand<'a> {
+pub(super) struct Hand<'a> {
     kinematics: &'a Kinematics,
     gripper: &'a Gripper,
     /// Links with geometry: palm side first, then fingers, ascending link index in each.
-    pub links: Vec<HandLink<'a>>,
+    pub(super) links: Vec<HandLink<'a>>,
     /// How to reach every link below the palm from its parent: position of the parent, joint, position of the child.
     walk: Vec<(usize, JointIdx, usize)>,
     /// Palm-relative pose slots: one for each entry of `slot_of`.
@@ -34,7 +34,7 @@ pub struct Hand<'a> {
 
 impl<'a> Hand<'a> {
     /// The hand of `gripper`; `parts_of` gives the convex parts of a link (empty when it has none).
-    pub fn new(
+    pub(super) fn new(
         kinematics: &'a Kinematics,
         gripper: &'a Gripper,
         parts_of: impl Fn(LinkIdx) -> Option<&'a ConvexParts>,
@@ -81,12 +81,12 @@ impl<'a> Hand<'a> {
     }
 
     /// The gripper this is the hand of.
-    pub fn gripper(&self) -> &Gripper {
+    pub(super) fn gripper(&self) -> &Gripper {
         self.gripper
     }
 
     /// `palm_from_link` of each of `links` when the fingers have these values (in the order of [`Gripper::dofs`]).
-    pub fn palm_from_links(&self, values: &[f64]) -> Vec<Pose> {
+    pub(super) fn palm_from_links(&self, values: &[f64]) -> Vec<Pose> {
         let model = self.kinematics.model();
         let mut palm_from = vec![Pose::identity(); self.slots];
         for &(parent, joint, child) in &self.walk {
@@ -115,12 +115,12 @@ impl<'a> Hand<'a> {
     }
 
     /// Range of a finger value, in the order of [`Gripper::dofs`].
-    pub fn range(&self, finger: usize) -> (f64, f64) {
+    pub(super) fn range(&self, finger: usize) -> (f64, f64) {
         self.kinematics.model().dofs()[self.gripper.dofs[finger]].sampling_range()
     }
 
     /// Farthest that any point of the links moved by `finger` travels for one unit of its value, metres.
-    pub fn travel_bound(&self, finger: usize) -> f64 {
+    pub(super) fn travel_bound(&self, finger: usize) -> f64 {
         let model = self.kinematics.model();
         let dof = self.gripper.dofs[finger];
         let mut bound: f64 = 0.0;

@@ -1,14 +1,17 @@
 //! How a gripper can hold an object: force-closure grasps, best first.
 
-mod contacts;
-mod hand;
-mod strategy;
-mod surface;
-
 #[cfg(feature = "build")]
 mod closure;
 #[cfg(feature = "build")]
+mod contacts;
+#[cfg(feature = "build")]
 mod generate;
+#[cfg(feature = "build")]
+mod hand;
+#[cfg(feature = "build")]
+mod strategy;
+#[cfg(feature = "build")]
+mod surface;
 
 use nalgebra::{Point3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 use robotc_core::Pose;
@@ -20,7 +23,7 @@ use serde::{Deserialize, Serialize};
 use crate::codec;
 use crate::graph::{Dep, PlanError, Planner};
 use crate::kind::{DecodeError, Kind, Portability};
-use crate::kinds::ConvexPartsOf;
+use crate::kinds::ConvexParts;
 use crate::project::{OfGripperAndObject, OfShape};
 use crate::projection::{Mechanism, Shapes};
 use crate::record::Parts;
@@ -29,15 +32,15 @@ use crate::record::Parts;
 ///
 /// Rays find points of the object's surface; the hand approaches each from several directions, with several turns,
 /// preshapes and standoffs, closes, and is kept when its contact patches resist every wrench (thesis section 4.2).
-pub struct GraspSetKind;
+pub struct GraspSet;
 
 /// What a grasp set is computed from.
 pub struct Inputs {
     hand: Mechanism,
     gripper: Gripper,
-    hand_parts: Vec<(LinkIdx, Dep<ConvexPartsOf>)>,
+    hand_parts: Vec<(LinkIdx, Dep<ConvexParts>)>,
     object: Shapes,
-    object_parts: Dep<ConvexPartsOf>,
+    object_parts: Dep<ConvexParts>,
     friction: f64,
 }
 
@@ -73,7 +76,7 @@ crate::parameters! {
     }
 }
 
-impl Kind for GraspSetKind {
+impl Kind for GraspSet {
     const NAME: &'static str = "grasp_set";
     const FORMAT: u32 = 1;
     const ALGORITHM: u32 = 1;
@@ -96,10 +99,10 @@ impl Kind for GraspSetKind {
         for (i, &link) in links.iter().enumerate() {
             if !robot.model.links()[link].collisions.is_empty() {
                 let index = robotc_core::ids::Idx::new(i);
-                hand_parts.push((index, planner.need::<ConvexPartsOf>(&OfShape::Link(link))?));
+                hand_parts.push((index, planner.need::<ConvexParts>(&OfShape::Link(link))?));
             }
         }
-        let object_parts = planner.need::<ConvexPartsOf>(&OfShape::Object(subject.object))?;
+        let object_parts = planner.need::<ConvexParts>(&OfShape::Object(subject.object))?;
         let (object, friction) = (Shapes::of(&object.geometry), object.friction);
         Ok(Inputs { hand, gripper, hand_parts, object, object_parts, friction })
     }
@@ -229,7 +232,11 @@ impl Stored {
 }
 
 fn point(p: [f64; 3]) -> Result<Point3<f64>, DecodeError> {
-    if p.iter().all(|x| x.is_finite()) { Ok(p.into()) } else { Err(DecodeError::new("a point is not finite")) }
+    if p.iter().all(|x| x.is_finite()) {
+        Ok(p.into())
+    } else {
+        Err(DecodeError::new("a point is not finite"))
+    }
 }
 
 fn direction(d: [f64; 3]) -> Result<Unit<Vector3<f64>>, DecodeError> {
@@ -244,7 +251,9 @@ fn direction(d: [f64; 3]) -> Result<Unit<Vector3<f64>>, DecodeError> {
 
 #[cfg(feature = "build")]
 mod build {
-    use robotc_core::geom::{ConvexParts, MeshIndex};
+    use std::sync::Arc;
+
+    use robotc_core::geom::{self, MeshIndex};
     use robotc_core::model::Kinematics;
 
     use super::closure::{ContactModel, PointContact, epsilon, wrenches};
@@ -277,7 +286,7 @@ mod build {
         }
     }
 
-    impl Build for GraspSetKind {
+    impl Build for GraspSet {
         fn build(
             inputs: &Inputs,
             parameters: &GraspParameters,
@@ -317,7 +326,8 @@ mod build {
                 length: 1.0,
             };
             for (i, grasp) in artefact.iter().enumerate() {
-                if grasp.preshape >= inputs.gripper.preshapes.len() || grasp.closed.len() != inputs.gripper.dofs.len()
+                if grasp.preshape >= inputs.gripper.preshapes.len()
+                    || grasp.closed.len() != inputs.gripper.dofs.len()
                 {
                     return wrong(i, "does not belong to this gripper");
                 }
@@ -349,16 +359,16 @@ mod build {
     fn load_hand(
         inputs: &Inputs,
         context: &Context<'_>,
-    ) -> Result<Vec<(LinkIdx, std::sync::Arc<ConvexParts>)>, BuildError> {
+    ) -> Result<Vec<(LinkIdx, Arc<geom::ConvexParts>)>, BuildError> {
         inputs.hand_parts.iter().map(|(link, dep)| Ok((*link, context.load(dep)?))).collect()
     }
 
-    fn part_of(parts: &[(LinkIdx, std::sync::Arc<ConvexParts>)], link: LinkIdx) -> Option<&ConvexParts> {
+    fn part_of(parts: &[(LinkIdx, Arc<geom::ConvexParts>)], link: LinkIdx) -> Option<&geom::ConvexParts> {
         parts.iter().find(|(l, _)| *l == link).map(|(_, parts)| &**parts)
     }
 
     /// Centre of the volume of the parts: the centre of mass where the density is the same everywhere.
-    fn centre_of_volume(parts: &ConvexParts) -> Point3<f64> {
+    fn centre_of_volume(parts: &geom::ConvexParts) -> Point3<f64> {
         let (mut volume, mut moment) = (0.0, Vector3::zeros());
         for part in parts {
             let points = part.points();

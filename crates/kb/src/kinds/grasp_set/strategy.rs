@@ -11,33 +11,33 @@ use super::hand::Hand;
 
 /// Where and how a hand comes in.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Approach {
+pub(super) struct Approach {
     /// A point of the object that the tool axis goes through, object frame.
-    pub target_in_object: Point3<f64>,
+    pub(super) target_in_object: Point3<f64>,
     /// Direction of motion, object frame.
-    pub direction_in_object: Unit<Vector3<f64>>,
+    pub(super) direction_in_object: Unit<Vector3<f64>>,
     /// Turn of the tool about the direction, radians.
-    pub roll: f64,
+    pub(super) roll: f64,
     /// Position in `Gripper::preshapes`.
-    pub preshape: usize,
+    pub(super) preshape: usize,
     /// How far to stand back from the first touch, metres.
-    pub standoff: f64,
+    pub(super) standoff: f64,
 }
 
 /// A hand closed on the object.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ClosedHand {
+pub(super) struct ClosedHand {
     /// Where the tool ended up.
-    pub object_from_tool: Pose,
+    pub(super) object_from_tool: Pose,
     /// Finger values.
-    pub closed: Vec<f64>,
+    pub(super) closed: Vec<f64>,
     /// `object_from_link` of each of [`Hand::links`].
-    pub object_from_links: Vec<Pose>,
+    pub(super) object_from_links: Vec<Pose>,
 }
 
 /// Why an approach gave no closed hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Miss {
+pub(super) enum Miss {
     /// The hand never came near the object.
     NoTouch,
     /// Fewer than two fingers touch when closed.
@@ -47,24 +47,24 @@ pub enum Miss {
 }
 
 /// The object to be grasped.
-pub struct Target<'a> {
+pub(super) struct Target<'a> {
     /// Its convex parts in the object frame.
-    pub parts: &'a ConvexParts,
+    pub(super) parts: &'a ConvexParts,
     /// Centre of its bounding ball, object frame.
-    pub centre: Point3<f64>,
+    pub(super) centre: Point3<f64>,
     /// Radius of that ball, metres.
-    pub radius: f64,
+    pub(super) radius: f64,
 }
 
 /// A gap smaller than this is a touch, metres.
-pub const TOUCH: f64 = 3e-4;
+pub(super) const TOUCH: f64 = 3e-4;
 /// Steps of an advance before it is taken as grazing; each step covers most of the free distance.
 const MOST_STEPS: usize = 48;
 /// Rounds of closing and centring; the rest gap halves at least with each.
 const CENTRING_ROUNDS: usize = 12;
 
 /// Runs the strategy.
-pub fn close_on(hand: &Hand, target: &Target, approach: &Approach) -> Result<ClosedHand, Miss> {
+pub(super) fn close_on(hand: &Hand, target: &Target, approach: &Approach) -> Result<ClosedHand, Miss> {
     let gripper = hand.gripper();
     let open = &gripper.preshapes[approach.preshape].values;
     let palm_from_links = hand.palm_from_links(open);

@@ -8,16 +8,16 @@ use super::strategy::Approach;
 
 /// A point of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SurfacePoint {
+pub(super) struct SurfacePoint {
     /// Object frame, metres.
-    pub point: Point3<f64>,
+    pub(super) point: Point3<f64>,
     /// Outward as the faces are wound; a surface that is not closed may have it the other way round.
-    pub normal: Unit<Vector3<f64>>,
+    pub(super) normal: Unit<Vector3<f64>>,
 }
 
 /// Points spread over all faces, about `spacing` metres apart: each face is cut into equal triangles no longer than
 /// that, one point in each. In face order.
-pub fn sample(mesh: &TriMesh, spacing: f64) -> Vec<SurfacePoint> {
+pub(super) fn sample(mesh: &TriMesh, spacing: f64) -> Vec<SurfacePoint> {
     let mut out = Vec::new();
     for face in 0..mesh.faces.len() {
         let Some(normal) = Unit::try_new(mesh.area_vector(face), 1e-14) else { continue };
@@ -53,26 +53,26 @@ fn thin(points: Vec<SurfacePoint>, spacing: f64) -> Vec<SurfacePoint> {
 
 /// What approaches are tried.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ApproachOptions {
+pub(super) struct ApproachOptions {
     /// Distance between the rays that find surface points, metres.
-    pub spacing: f64,
+    pub(super) spacing: f64,
     /// Equal turns about the direction of approach.
-    pub rolls: usize,
+    pub(super) rolls: usize,
     /// Directions for each surface point: against its normal, then evenly round a cone about that.
-    pub directions: usize,
+    pub(super) directions: usize,
     /// Half angle of that cone, radians.
-    pub cone: f64,
+    pub(super) cone: f64,
     /// Distances to stand back after the first touch, metres.
-    pub standoffs: Vec<f64>,
+    pub(super) standoffs: Vec<f64>,
     /// Number of preshapes of the gripper.
-    pub preshapes: usize,
+    pub(super) preshapes: usize,
 }
 
 /// All approaches, in the order: surface point, direction, roll, preshape, standoff.
 ///
 /// Surface points are where rays from the six sides of the box around the object first meet it (thesis section 4.2).
 /// Hands come in against the normal there, and along a cone around that direction.
-pub fn approaches(mesh: &TriMesh, index: &MeshIndex, options: &ApproachOptions) -> Vec<Approach> {
+pub(super) fn approaches(mesh: &TriMesh, index: &MeshIndex, options: &ApproachOptions) -> Vec<Approach> {
     let mut out = Vec::new();
     for (target_in_object, inward) in seen_from_box(mesh, index, options.spacing) {
         for direction_in_object in cone(&inward, options.directions, options.cone) {

@@ -100,7 +100,7 @@ impl Grid {
 
 /// A bound on the distance of the tip from the first joint's origin, metres: all link offsets stretched out, and all
 /// slides at their far end.
-pub fn reach(chain: &SerialChain) -> f64 {
+pub(super) fn reach(chain: &SerialChain) -> f64 {
     let offsets = chain.joints.iter().skip(1).map(|j| j.previous_from_joint.translation.vector.norm());
     let slides = chain.joints.iter().filter(|j| j.motion == ChainMotion::Prismatic).map(|j| {
         let v = &chain.variables[j.variable];

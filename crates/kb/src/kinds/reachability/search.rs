@@ -9,16 +9,16 @@ use super::map::{Grid, ReachabilityMap, reach};
 
 /// How finely to look.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SearchOptions {
+pub(super) struct SearchOptions {
     /// Values tried for each free joint, evenly over its range.
-    pub free_samples: usize,
+    pub(super) free_samples: usize,
 }
 
 /// Everything that looking at a cell needs.
 ///
 /// The first joint's own limits are left to queries, since a turn about the first axis turns the pose with it; for
 /// self-collision it stands as near as its limits allow.
-pub struct Search<'a, C> {
+pub(super) struct Search<'a, C> {
     chain: &'a SerialChain,
     solver: &'a dyn InverseKinematics,
     collides: C,
@@ -29,14 +29,14 @@ pub struct Search<'a, C> {
 
 /// The cells at one distance from the axis.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Row {
+pub(super) struct Row {
     counts: Vec<u8>,
     witnesses: Vec<f32>,
 }
 
 impl<'a, C: Fn(&[f64]) -> bool> Search<'a, C> {
     /// A search over `grid`; `collides` says whether the arm at these joint values touches itself.
-    pub fn new(
+    pub(super) fn new(
         chain: &'a SerialChain,
         solver: &'a dyn InverseKinematics,
         grid: Grid,
@@ -49,7 +49,7 @@ impl<'a, C: Fn(&[f64]) -> bool> Search<'a, C> {
     }
 
     /// Looks at all cells of a row: `r` below `grid.radial`.
-    pub fn row(&self, r: usize) -> Row {
+    pub(super) fn row(&self, r: usize) -> Row {
         let cells = self.grid.vertical * self.grid.rotations().len();
         let mut row = Row::default();
         let mut solutions = IkSolutions::new();
@@ -63,7 +63,7 @@ impl<'a, C: Fn(&[f64]) -> bool> Search<'a, C> {
     }
 
     /// The map of all rows, in order.
-    pub fn assemble(self, rows: Vec<Row>) -> ReachabilityMap {
+    pub(super) fn assemble(self, rows: Vec<Row>) -> ReachabilityMap {
         let mut counts = Vec::with_capacity(self.grid.len());
         let mut witnesses = Vec::new();
         for row in rows {
@@ -165,7 +165,7 @@ fn free_values(chain: &SerialChain, free: &[usize], samples: usize) -> Vec<Vec<f
 
 /// Checks by forward kinematics alone that a witness reaches the centre of its cell. Position in metres and rotation as
 /// Frobenius norm, both to the accuracy of the stored single-precision values.
-pub fn witness_is_true(chain: &SerialChain, map: &ReachabilityMap, cell: usize) -> bool {
+pub(super) fn witness_is_true(chain: &SerialChain, map: &ReachabilityMap, cell: usize) -> bool {
     let Some(joints) = map.cell_witness(cell) else { return false };
     let (reached, centre) = (chain.forward(&joints), map.grid.centre(cell));
     let off = (reached.translation.vector - centre.translation.vector).norm();
