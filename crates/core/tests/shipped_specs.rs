@@ -1,6 +1,7 @@
 //! The robots and tasks in `specs/`: they load without a finding, what a robot touches with contains what is seen of
 //! it, and frames agree with the vendors' descriptions where both have them.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -9,6 +10,7 @@ use robotc_core::Pose;
 use robotc_core::diag::Sources;
 use robotc_core::geom::{self, ConvexPart};
 use robotc_core::model::{Configuration, Geometry, Kinematics, LinkPoses, RobotModel, Shape};
+use robotc_core::robot::Robot;
 use robotc_core::spec::{self, ParameterTable, TaskSpec};
 use robotc_core::system::{ReadError, System};
 use robotc_core::task::Task;
@@ -228,27 +230,79 @@ fn things(task: &Task) -> (Vec<(&str, Parts, Pose)>, usize) {
     (objects.chain(obstacles).collect(), task.objects.len())
 }
 
+/// Pairs of links that are tested against each other and are closer than a millimetre.
+fn self_contacts(robot: &Robot, q: &Configuration) -> Vec<String> {
+    let mut poses = LinkPoses::default();
+    Kinematics::new(Arc::clone(&robot.model)).link_poses(q, &mut poses);
+    let links: Vec<_> =
+        robot.model.links().enumerate().map(|(link, l)| (link, &l.name, parts(&l.collisions))).collect();
+    let mut found = Vec::new();
+    for (i, (a, name, parts)) in links.iter().enumerate() {
+        for (b, other, other_parts) in &links[i + 1..] {
+            let is_tested = !robot.ignored_pairs.contains(&(*a, *b));
+            if is_tested && distance(parts, poses.root_from(*a), other_parts, poses.root_from(*b)) < 0.001 {
+                found.push(format!("{name} and {other}"));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn grippers_are_free_at_every_preshape() {
+    for path in files(&specs(), ".task.toml") {
+        let task = load_task(&path).task;
+        for gripper in &task.robot.grippers {
+            for preshape in &gripper.preshapes {
+                let mut q = task.start.clone();
+                q.set(&gripper.dofs, &preshape.values);
+                let contacts = self_contacts(&task.robot, &q);
+                assert!(contacts.is_empty(), "{}: {}: {contacts:?}", path.display(), preshape.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn most_positions_are_free() {
+    for path in files(&specs(), ".robot.toml") {
+        let mut sources = Sources::default();
+        let (spec, _) = spec::load_robot(&Disk, &mut sources, &path, &ParameterTable::default());
+        let robot = spec.expect("specifications load").robot;
+        let mut contacts = BTreeMap::<String, usize>::new();
+        let rounds = 60;
+        let mut hit = 0;
+        for round in 0..rounds {
+            // Well spread numbers: multiples of roots of primes, modulo one.
+            let primes = [2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0, 31.0, 37.0_f64];
+            let values = robot.model.dofs().iter().zip(primes).map(|(dof, prime)| {
+                let (low, high) = dof.sampling_range();
+                low + (high - low) * (f64::from(round + 1) * prime.sqrt()).fract()
+            });
+            let found = self_contacts(&robot, &Configuration::from_values(values.collect()));
+            hit += usize::from(!found.is_empty());
+            found.into_iter().for_each(|pair| *contacts.entry(pair).or_default() += 1);
+        }
+        assert!(hit * 10 < rounds as usize * 7, "{}", path.display());
+        assert!(contacts.values().all(|n| n * 2 < rounds as usize), "{}: {contacts:?}", path.display());
+    }
+}
+
 #[test]
 fn robots_start_free() {
     for path in files(&specs(), ".task.toml") {
         let task = load_task(&path).task;
-        let robot = &task.robot;
+        let contacts = self_contacts(&task.robot, &task.start);
+        assert!(contacts.is_empty(), "{}: {contacts:?}", path.display());
         let mut poses = LinkPoses::default();
-        Kinematics::new(Arc::clone(&robot.model)).link_poses(&task.start, &mut poses);
-        let links: Vec<_> =
-            robot.model.links().enumerate().map(|(link, l)| (link, &l.name, parts(&l.collisions))).collect();
+        Kinematics::new(Arc::clone(&task.robot.model)).link_poses(&task.start, &mut poses);
         let (things, _) = things(&task);
-        for (i, (a, name, parts)) in links.iter().enumerate() {
-            for (b, other, other_parts) in &links[i + 1..] {
-                if !robot.ignored_pairs.contains(&(*a, *b)) {
-                    let gap = distance(parts, poses.root_from(*a), other_parts, poses.root_from(*b));
-                    assert!(gap > 0.001, "{}: {name} and {other}: {gap} m", path.display());
-                }
-            }
-            let world_from_link = task.world_from_robot * poses.root_from(*a);
+        for (index, link) in task.robot.model.links().enumerate() {
+            let world_from_link = task.world_from_robot * poses.root_from(index);
+            let parts = parts(&link.collisions);
             for (thing, thing_parts, world_from_thing) in &things {
-                let gap = distance(parts, &world_from_link, thing_parts, world_from_thing);
-                assert!(gap > 0.004, "{}: {name} and {thing}: {gap} m", path.display());
+                let gap = distance(&parts, &world_from_link, thing_parts, world_from_thing);
+                assert!(gap > 0.004, "{}: {} and {thing}: {gap} m", path.display(), link.name);
             }
         }
     }
