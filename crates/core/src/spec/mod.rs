@@ -15,6 +15,7 @@ mod file;
 mod goals;
 mod grippers;
 mod groups;
+mod init;
 mod json_schema;
 mod limits;
 mod lookup;
@@ -29,6 +30,7 @@ mod task_schema;
 mod validate;
 
 pub use check::{Summary, check};
+pub use init::{InitOptions, init};
 pub use json_schema::json_schema;
 pub use parameters::{
     KindParameters, Parameter, ParameterDefault, ParameterKind, ParameterTable, ParameterValue, Parameters,

@@ -2,6 +2,7 @@
 
 mod disk;
 mod findings;
+mod guesses;
 mod mutations;
 mod shipped;
 mod summaries;
