@@ -13,7 +13,7 @@ pub fn reference(kind: SpecKind) -> String {
 
 fn section(heading: &str, schema: &TableSchema, text: &mut String) {
     if !heading.is_empty() {
-        *text += &format!("\n#### `{heading}`\n\n");
+        *text += &format!("\n### `{heading}`\n\n");
     }
     *text += schema.doc;
     *text += "\n\n| key | value | default | meaning |\n|---|---|---|---|\n";

@@ -3,6 +3,7 @@
 mod disk;
 mod findings;
 mod guesses;
+mod guide;
 mod mutations;
 mod shipped;
 mod summaries;
