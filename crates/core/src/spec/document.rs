@@ -22,6 +22,8 @@ pub(super) enum Value {
     Text(String),
     /// A date, which no specification uses.
     Date,
+    /// A number that does not fit; reported already.
+    Unreadable,
     List(Vec<Node>),
     Table(Table),
 }
@@ -49,6 +51,7 @@ impl Node {
             Value::Float(_) => "a number",
             Value::Text(_) => "a text",
             Value::Date => "a date",
+            Value::Unreadable => "a number",
             Value::List(_) => "a list",
             Value::Table(_) => "a table",
         }
@@ -217,14 +220,14 @@ fn node(file: FileId, source: &Spanned<DeValue<'_>>, diagnostics: &mut Diagnosti
             Ok(value) => Value::Integer(value),
             Err(_) => {
                 unreadable("this integer", "an integer of 64 bits");
-                Value::Integer(0)
+                Value::Unreadable
             }
         },
         DeValue::Float(x) => match x.as_str().parse::<f64>() {
             Ok(value) if value.is_finite() || x.as_str().contains(['i', 'n']) => Value::Float(value),
             _ => {
                 unreadable("this number", "a number that fits double precision");
-                Value::Float(0.0)
+                Value::Unreadable
             }
         },
         DeValue::String(text) => Value::Text(text.to_string()),

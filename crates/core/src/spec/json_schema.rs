@@ -169,7 +169,7 @@ fn to_json(node: &document::Node) -> Value {
         document::Value::Integer(i) => json!(i),
         document::Value::Float(x) => json!(x),
         document::Value::Text(text) => json!(text),
-        document::Value::Date => Value::Null,
+        document::Value::Date | document::Value::Unreadable => Value::Null,
         document::Value::List(items) => Value::Array(items.iter().map(to_json).collect()),
         document::Value::Table(table) => {
             Value::Object(table.entries.iter().map(|e| (e.key.clone(), to_json(&e.node))).collect())

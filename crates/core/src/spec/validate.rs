@@ -137,7 +137,7 @@ impl Checker<'_> {
 
     fn node(&mut self, node: &Node, kind: Kind, path: &str) {
         match (kind, &node.value) {
-            (Kind::Bool, Value::Bool(_)) => {}
+            (Kind::Bool, Value::Bool(_)) | (_, Value::Unreadable) => {}
             (Kind::Integer(min, max), Value::Integer(i)) => {
                 if !(min..=max).contains(i) {
                     self.out_of_range(node, path, i, &integers(min, max), None);
