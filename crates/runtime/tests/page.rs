@@ -80,6 +80,7 @@ fn seen_at(recording: &Recording, camera: &Camera, name: &str, time: f64) -> [f6
 }
 
 #[test]
+#[allow(clippy::print_stderr, reason = "a test that skips says so")]
 fn things_are_seen_where_they_are() {
     let Some(browser) = browser() else {
         eprintln!("skipped: no browser found");

@@ -294,3 +294,87 @@ fn numbers(pose: &Pose) -> [f32; 7] {
     let (t, q) = (pose.translation.vector, pose.rotation.coords);
     [t.x, t.y, t.z, q.x, q.y, q.z, q.w].map(|x| x as f32)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::path::Path;
+
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    fn names_in(folder: &str) -> BTreeSet<String> {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/view/page").join(folder);
+        let entries = std::fs::read_dir(folder).expect("the folder is there");
+        entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
+    }
+
+    #[test]
+    fn every_source_is_part_of_the_page() {
+        let listed = |sources: &[(&str, &str)]| sources.iter().map(|(n, _)| (*n).to_owned()).collect();
+        let mut modules: BTreeSet<String> = listed(&MODULES);
+        modules.insert("main.js".to_owned());
+        assert_eq!(names_in("js"), modules);
+        assert_eq!(names_in("shaders"), listed(&SHADERS));
+    }
+
+    #[test]
+    fn modules_import_what_came_before_and_share_no_name() {
+        let (mut before, mut declared) = (BTreeSet::new(), BTreeSet::new());
+        for (name, source) in MODULES.into_iter().chain([("main.js", MAIN)]) {
+            for line in source.lines() {
+                if let Some((_, from)) = line.split_once("} from './").filter(|_| line.starts_with("import "))
+                {
+                    let from = from.trim_end_matches("';");
+                    assert!(before.contains(from), "{name} imports {from}, which comes later");
+                }
+                let line = line.strip_prefix("export ").unwrap_or(line);
+                let mut words = line.split([' ', '(', '=', ';']);
+                if let (Some("const" | "function" | "class" | "let"), Some(word)) =
+                    (words.next(), words.next())
+                {
+                    assert!(declared.insert(word), "{word} of {name} is declared twice");
+                }
+            }
+            before.insert(name);
+        }
+    }
+
+    #[test]
+    fn octahedral_normals_come_back() {
+        let unfolded = |[u, v]: [f32; 2]| {
+            let z = 1.0 - u.abs() - v.abs();
+            let back = (-z).max(0.0);
+            let shift = |a: f32| if a >= 0.0 { a - back } else { a + back };
+            Vector3::new(shift(u), shift(v), z).normalize()
+        };
+        for i in 0..400u16 {
+            let (height, turn) = (f32::from(i) / 199.5 - 1.0, f32::from(i) * 2.4);
+            let across = (1.0 - height * height).max(0.0).sqrt();
+            let n = [across * libm::cosf(turn), across * libm::sinf(turn), height];
+            assert!((unfolded(octahedral(&n)) - Vector3::from(n)).norm() < 1e-5, "{n:?}");
+        }
+    }
+
+    #[test]
+    fn vertices_lie_within_half_a_step_of_where_they_are() {
+        let surface = Surface {
+            positions: vec![[0.0, -1.0, 5.0], [0.3, 2.0, 5.0], [1.0, 0.5, 5.0]],
+            normals: vec![[0.0, 0.0, 1.0]; 3],
+            triangles: vec![[0, 1, 2]],
+        };
+        let mut block = Block::default();
+        let scene = scene_surface(&surface, &mut block);
+        let words: Vec<u16> =
+            block.as_bytes().chunks_exact(2).map(|b| u16::from_le_bytes([b[0], b[1]])).collect();
+        for (vertex, position) in surface.positions.iter().enumerate() {
+            for k in 0..3 {
+                let share = f32::from(words[5 * vertex + k]) / 65535.0;
+                let error = (scene.low[k] + share * scene.size[k] - position[k]).abs();
+                assert!(error <= scene.size[k] / 65535.0, "vertex {vertex}: {error}");
+            }
+        }
+        assert_eq!((scene.vertices.count, scene.indices.count, scene.wide), (15, 3, false));
+    }
+}
