@@ -9,7 +9,7 @@ pub use map::ReachabilityMap;
 
 use robotc_core::ids::{Idx, LinkIdx};
 use robotc_core::model::{ChainMotion, SerialChain};
-use robotc_core::{DofIdx, Kinematics, Pose};
+use robotc_core::{Kinematics, Pose};
 use serde::{Deserialize, Serialize};
 
 use crate::codec;
@@ -210,7 +210,7 @@ mod build {
             }
             let pairs = context.load(&inputs.pairs)?.tested().collect();
             let scene = Scene::new(&kinematics, Pose::identity(), &links, pairs, Vec::new());
-            let dofs: Vec<DofIdx> = chain.variables.iter().map(|v| v.dof).collect();
+            let dofs: Vec<_> = chain.variables.iter().map(|v| v.dof).collect();
             let neutral = Configuration::neutral(model);
             let collides = |joints: &[f64]| {
                 let mut q = neutral.clone();

@@ -1,0 +1,202 @@
+//! A task with everything that was compiled for it, ready to be planned and run.
+
+use std::sync::Arc;
+
+use robotc_core::task::Task;
+use robotc_core::{Configuration, Kinematics, LinkIdx, LinkPoses, SerialChain, TypedVec, World};
+use robotc_ikgen::Solver;
+use robotc_kb::kinds::{
+    ConvexParts, GraspSet as GraspSetKind, IkSolver, LinkStatistics, Reachability, ReachabilityMap,
+    SelfCollisionPairs,
+};
+use robotc_kb::project::{OfArm, OfGripperAndObject, OfRobot, OfShape};
+use robotc_kb::{Knowledge, LoadError};
+use robotc_planning::grasp::GraspSet;
+use robotc_planning::manipulation::{
+    Manipulation, ManipulationOptions, Observer, Plan, PlanFailure, Uncertified, certify, pick_and_place,
+};
+use robotc_planning::scene::{Scene, SceneBody};
+use robotc_planning::{ArmError, ArmModel, Budget};
+use thiserror::Error;
+
+/// Why a task cannot be worked on.
+#[derive(Debug, Error)]
+pub enum SessionError {
+    /// The knowledge base is about a robot alone.
+    #[error("the knowledge base was compiled for a robot; a session needs a task")]
+    NoTask,
+    /// An artefact is missing or damaged.
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    /// The inverse-kinematics program does not fit the arm.
+    #[error("the inverse kinematics of arm {arm} cannot be used: {error}")]
+    Solver {
+        /// The arm.
+        arm: String,
+        /// What is wrong.
+        error: robotc_ikgen::run::LoadError,
+    },
+    /// The arm cannot be modelled.
+    #[error(transparent)]
+    Arm(#[from] ArmError),
+}
+
+/// A task with its artefacts. Nothing is computed that could have been compiled.
+pub struct Session {
+    task: Arc<Task>,
+    kinematics: Kinematics,
+    arm: ArmModel,
+    scene: Scene,
+    grasps: Vec<GraspSet>,
+    reachability: Option<Arc<ReachabilityMap>>,
+}
+
+impl Session {
+    /// Loads everything that the task of this knowledge base needs.
+    pub fn open(knowledge: &Knowledge) -> Result<Self, SessionError> {
+        let project = knowledge.graph().project();
+        let task = project.task().ok_or(SessionError::NoTask)?.clone();
+        let robot = task.robot.clone();
+        let kinematics = Kinematics::new(robot.model.clone());
+
+        let mut links: TypedVec<LinkIdx, _> =
+            robot.model.links().iter().map(|_| Default::default()).collect();
+        for link in robot.model.links().indices() {
+            if !robot.model.links()[link].collisions.is_empty() {
+                links[link] = (*knowledge.load::<ConvexParts>(&OfShape::Link(link))?).clone();
+            }
+        }
+        let pairs = knowledge.load::<SelfCollisionPairs>(&OfRobot)?.tested().collect();
+        let mut bodies = Vec::new();
+        for (i, object) in task.objects.iter().enumerate() {
+            let parts = knowledge.load::<ConvexParts>(&OfShape::Object(i))?;
+            bodies.push(SceneBody {
+                name: object.name.clone(),
+                parts,
+                world_from_body: object.world_from_object,
+            });
+        }
+        for (i, obstacle) in task.obstacles.iter().enumerate() {
+            let parts = knowledge.load::<ConvexParts>(&OfShape::Obstacle(i))?;
+            let world_from_body = obstacle.world_from_obstacle;
+            bodies.push(SceneBody { name: obstacle.name.clone(), parts, world_from_body });
+        }
+        let scene = Scene::new(&kinematics, task.world_from_robot, &links, pairs, bodies);
+
+        let arm = load_arm(knowledge, &task, &kinematics)?;
+        let mut grasps = Vec::new();
+        for (i, object) in task.objects.iter().enumerate() {
+            let set = match robot.arms[task.arm].gripper {
+                Some(gripper) => {
+                    let grasps =
+                        knowledge.load::<GraspSetKind>(&OfGripperAndObject { gripper, object: i })?;
+                    GraspSet::new(&robot.grippers[gripper].name, &object.name, (*grasps).clone())
+                }
+                None => GraspSet::default(),
+            };
+            grasps.push(set);
+        }
+        let reachability = match knowledge.load::<Reachability>(&OfArm(task.arm)) {
+            Ok(map) => Some(map),
+            // Arms whose first joint slides have no map.
+            Err(LoadError::NotPlanned { .. }) => None,
+            Err(error) => return Err(error.into()),
+        };
+        Ok(Self { task, kinematics, arm, scene, grasps, reachability })
+    }
+
+    /// What shall happen.
+    pub fn task(&self) -> &Arc<Task> {
+        &self.task
+    }
+
+    /// The robot's model and calibration.
+    pub fn kinematics(&self) -> &Kinematics {
+        &self.kinematics
+    }
+
+    /// The arm that does the task.
+    pub fn arm(&self) -> &ArmModel {
+        &self.arm
+    }
+
+    /// Robot and bodies at the start: objects of the task in order, then obstacles.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The grasp set of each object of the task.
+    pub fn grasps(&self) -> &[GraspSet] {
+        &self.grasps
+    }
+
+    /// The reachability map of the arm, if it has one.
+    pub fn reachability(&self) -> Option<&ReachabilityMap> {
+        self.reachability.as_deref()
+    }
+
+    /// The world at the start: objects of the task in order, then obstacles.
+    pub fn world(&self) -> World {
+        World::of_task(&self.task, self.kinematics.clone())
+    }
+
+    /// Plans the task. The result depends on options and seed alone unless the budget ends it.
+    pub fn plan(
+        &self,
+        options: &ManipulationOptions,
+        budget: &Budget<'_>,
+        seed: robotc_core::Seed,
+        observer: &mut dyn Observer,
+    ) -> Result<Plan, PlanFailure> {
+        let grasps: Vec<&GraspSet> = self.grasps.iter().collect();
+        pick_and_place(&self.problem(&grasps), options, budget, seed, observer)
+    }
+
+    /// Replays a plan densely and checks everything about it: no point of the robot travels more than `resolution`
+    /// metres between two looks. Gives the number of states looked at.
+    pub fn certify(
+        &self,
+        options: &ManipulationOptions,
+        plan: &Plan,
+        resolution: f64,
+    ) -> Result<u64, Uncertified> {
+        let grasps: Vec<&GraspSet> = self.grasps.iter().collect();
+        certify(&self.problem(&grasps), options, plan, resolution)
+    }
+
+    fn problem<'a>(&'a self, grasps: &'a [&'a GraspSet]) -> Manipulation<'a> {
+        Manipulation {
+            task: &self.task,
+            kinematics: &self.kinematics,
+            arm: &self.arm,
+            scene: &self.scene,
+            grasps,
+            start: &self.task.start,
+        }
+    }
+
+    /// Poses of all links in the frame of the robot's root.
+    pub fn link_poses(&self, q: &Configuration) -> LinkPoses {
+        let mut poses = LinkPoses::default();
+        self.kinematics.link_poses(q, &mut poses);
+        poses
+    }
+}
+
+fn load_arm(knowledge: &Knowledge, task: &Task, kinematics: &Kinematics) -> Result<ArmModel, SessionError> {
+    let robot = &task.robot;
+    let arm = &robot.arms[task.arm];
+    let chain = SerialChain::between(kinematics, arm.base, arm.tip).map_err(ArmError::from)?;
+    let program = knowledge.load::<IkSolver>(&OfArm(task.arm))?;
+    let solver = Solver::new((*program).clone(), &chain)
+        .map_err(|error| SessionError::Solver { arm: arm.name.clone(), error })?;
+    let statistics = knowledge.load::<LinkStatistics>(&OfRobot)?;
+    let by_hand = |dof| robot.weights.iter().find(|(d, _)| *d == dof).map(|(_, weight)| *weight);
+    let weights: Vec<f64> = chain
+        .variables
+        .iter()
+        .map(|v| by_hand(v.dof).unwrap_or(statistics[robotc_core::ids::Idx::index(v.dof)].weight))
+        .collect();
+    let solver = Arc::new(solver);
+    Ok(ArmModel::new(robot, kinematics, task.arm, solver, &weights, &task.world_from_robot, &task.start)?)
+}
