@@ -42,12 +42,22 @@ impl Hull {
     /// Largest height of the point above a face; not positive inside.
     pub(super) fn height(&self, point: &Point3<f64>) -> f64 {
         let above = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|i| self.points[i as usize]);
-            let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
-            Some(normal.dot(&(point - a)))
+            let normal = facet_normal(&self.points, t)?;
+            Some(normal.dot(&(point - self.points[t[0] as usize])))
         };
         self.triangles.iter().filter_map(above).fold(f64::NEG_INFINITY, f64::max)
     }
+}
+
+/// A triangle lower than this fraction of its longest edge has no normal to speak of: rounding would turn it.
+const SLIVER: f64 = 1e-7;
+
+/// Outward unit normal of a triangle; `None` for a sliver, whose neighbours' planes bound the polytope anyway.
+pub(super) fn facet_normal(points: &[Point3<f64>], triangle: &[u32; 3]) -> Option<Vector3<f64>> {
+    let [a, b, c] = triangle.map(|i| points[i as usize]);
+    let normal = (b - a).cross(&(c - a));
+    let edge = (b - a).norm_squared().max((c - a).norm_squared()).max((c - b).norm_squared());
+    normal.try_normalize(SLIVER * edge)
 }
 
 /// Flat sets are given this thickness, as a fraction of their size: far above rounding, far below anything seen.
@@ -112,11 +122,9 @@ pub(super) fn is_closed(hull: &Hull) -> bool {
 fn excess(hull: &Hull, points: &[Vector3<f64>]) -> f64 {
     let middle = mean(&hull.points);
     let mut factor: f64 = 0.0;
-    for &[a, b, c] in &hull.triangles {
-        let [a, b, c] = [a, b, c].map(|i| hull.points[i as usize].coords);
-        let normal = (b - a).cross(&(c - a));
-        let Some(normal) = normal.try_normalize(0.0) else { continue };
-        let offset = normal.dot(&(a - middle));
+    for triangle in &hull.triangles {
+        let Some(normal) = facet_normal(&hull.points, triangle) else { continue };
+        let offset = normal.dot(&(hull.points[triangle[0] as usize].coords - middle));
         if offset <= 0.0 {
             return f64::INFINITY;
         }

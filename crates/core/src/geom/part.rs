@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{Point3, Unit, Vector3};
 use thiserror::Error;
 
-use super::hull::{Hull, HullError, convex_hull, is_closed};
+use super::hull::{Hull, HullError, convex_hull, facet_normal, is_closed};
 use super::{Aabb, MeshIndex};
 use crate::Pose;
 use crate::model::TriMesh;
@@ -103,9 +103,9 @@ impl ConvexPart {
         if !is_closed(&hull) || used.contains(&false) {
             return Err(PartError::NotClosed);
         }
-        for &[a, b, c] in &hull.triangles {
-            let [a, b, c] = [a, b, c].map(|i| hull.points[i as usize]);
-            let Some(normal) = (b - a).cross(&(c - a)).try_normalize(0.0) else { continue };
+        for triangle in &hull.triangles {
+            let Some(normal) = facet_normal(&hull.points, triangle) else { continue };
+            let a = hull.points[triangle[0] as usize];
             if hull.points.iter().any(|p| normal.dot(&(p - a)) > CONVEXITY_TOLERANCE * size) {
                 return Err(PartError::NotConvex);
             }
@@ -205,28 +205,15 @@ impl ConvexPart {
     }
 }
 
-/// Unit normals of the triangles; a sliver without area takes the normal of a neighbour it shares an edge with.
+/// Unit normals of the triangles; a sliver takes the normal of a neighbour.
 fn face_normals(points: &[Point3<f64>], triangles: &[[u32; 3]]) -> Vec<Vector3<f64>> {
-    let raw = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|i| points[i as usize]);
-        (b - a).cross(&(c - a))
-    };
-    let mut normals: Vec<Vector3<f64>> = triangles.iter().map(raw).collect();
-    let largest = normals.iter().map(|n| n.norm()).fold(0.0, f64::max);
-    let sliver = largest * 1e-12;
-    for i in 0..normals.len() {
-        if normals[i].norm() > sliver {
-            normals[i].normalize_mut();
-            continue;
-        }
+    let own: Vec<Option<Vector3<f64>>> = triangles.iter().map(|t| facet_normal(points, t)).collect();
+    let neighbour = |i: usize| {
         let shares_edge = |t: &[u32; 3]| t.iter().filter(|v| triangles[i].contains(v)).count() == 2;
-        let neighbour = (0..triangles.len())
-            .filter(|&j| j != i && shares_edge(&triangles[j]))
-            .max_by(|&a, &b| raw(&triangles[a]).norm().total_cmp(&raw(&triangles[b]).norm()));
-        let borrowed = neighbour.map_or(Vector3::zeros(), |j| raw(&triangles[j]));
-        normals[i] = borrowed.try_normalize(0.0).unwrap_or_else(Vector3::z);
-    }
-    normals
+        (0..triangles.len()).filter(|&j| shares_edge(&triangles[j])).find_map(|j| own[j])
+    };
+    let any = own.iter().copied().flatten().next().unwrap_or_else(Vector3::z);
+    (0..triangles.len()).map(|i| own[i].or_else(|| neighbour(i)).unwrap_or(any)).collect()
 }
 
 /// One plane for each group of coplanar triangles, pushed out to hold every point.

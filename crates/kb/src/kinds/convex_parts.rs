@@ -98,7 +98,7 @@ impl Kind for ConvexParts {
 
 #[cfg(feature = "build")]
 mod build {
-    use robotc_core::geom::{box_part, capsule_part, cylinder_part, sphere_part};
+    use robotc_core::geom::{DecomposeOptions, parts_of_shape};
     use robotc_core::model::{Geometry, Shape};
 
     use super::*;
@@ -141,19 +141,13 @@ mod build {
     }
 
     fn cover(element: &Geometry, parameters: &ConvexPartsParameters) -> Result<Parts3, BuildError> {
-        let parts = match &element.shape {
-            Shape::Box { size } => Parts3::new(vec![box_part((*size).into())]),
-            Shape::Cylinder { radius, length } => Parts3::new(vec![cylinder_part(*radius, *length)]),
-            Shape::Capsule { radius, length } => Parts3::new(vec![capsule_part(*radius, *length)]),
-            Shape::Sphere { radius } => Parts3::new(vec![sphere_part(*radius)]),
-            Shape::Mesh { mesh, .. } => {
-                let options = parameters;
-                let _ = options;
-                ConvexPart::hull_of(&mesh.vertices)
-                    .map(|h| Parts3::new(vec![h]))
-                    .map_err(|error| BuildError::Impossible(error.to_string()))?
-            }
+        let options = DecomposeOptions {
+            concavity: parameters.concavity,
+            max_parts: parameters.max_parts as usize,
+            max_vertices: parameters.max_vertices as usize,
         };
+        let parts = parts_of_shape(&element.shape, &options);
+        let parts = parts.map_err(|error| BuildError::Impossible(error.to_string()))?;
         Ok(parts.transformed(&element.origin.pose()))
     }
 

@@ -77,6 +77,10 @@ fn parts_cover_real_meshes_and_are_small() {
         }
         assert!(parts.len() <= options.max_parts, "{path}: {} parts", parts.len());
         assert!(parts.iter().all(|p| p.points().len() <= options.max_vertices), "{path}");
+        for part in &parts {
+            let again = ConvexPart::from_raw(part.points().to_vec(), part.triangles().to_vec());
+            assert_eq!(again.as_ref(), Ok(part), "{path}");
+        }
         assert_eq!(decompose(&mesh, &options).as_ref(), Ok(&parts), "{path}: not the same twice");
     }
 }
