@@ -105,7 +105,7 @@ pub fn polish(
     let mut at = [0.0; MAX_JOINTS];
     at[..n].copy_from_slice(values);
     let mut best = f64::INFINITY;
-    for _ in 0..30 {
+    for _ in 0..50 {
         let (distance, error, columns) = linearise(links, last_from_tip, base_from_tip, &at[..n]);
         if distance < best {
             let converged = distance < EXACT && distance > 0.1 * best;

@@ -4,14 +4,16 @@
 //! reason: the Rust back end copies them verbatim into generated sources. What a generated file runs is what
 //! the interpreter and the bytecode run.
 
+pub mod candidate;
 pub mod chain;
 pub mod math;
 pub mod roots;
 
 /// Source text of the kernel files, as generated files carry it.
 #[cfg(feature = "generate")]
-pub(crate) const SOURCES: [(&str, &str); 3] = [
+pub(crate) const SOURCES: [(&str, &str); 4] = [
     ("math", include_str!("math.rs")),
     ("roots", include_str!("roots.rs")),
     ("chain", include_str!("chain.rs")),
+    ("candidate", include_str!("candidate.rs")),
 ];

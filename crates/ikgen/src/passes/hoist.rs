@@ -107,8 +107,8 @@ impl Hoist<'_> {
             let name = match self.levels[target].known.get(&part) {
                 Some(name) => *name,
                 None => {
-                    let value =
-                        rewrite(self.from, &mut self.out.exprs, part, &mut HashMap::new(), &|_, _| None);
+                    // Its own parts may belong further out still.
+                    let value = self.renamed(part, target);
                     self.number += 1;
                     let var = self.out.bind(&format!("h{}", self.number));
                     let name = self.out.exprs.intern(Node::Var(var));

@@ -56,7 +56,6 @@ pub struct Bytecode {
     first_constant: usize,
     constants: Vec<f64>,
     registers: usize,
-    slack: f64,
 }
 
 impl Bytecode {
@@ -95,7 +94,6 @@ impl Bytecode {
             first_constant,
             constants: t.constants.iter().map(|b| f64::from_bits(*b)).collect(),
             registers: t.high_water,
-            slack: program.slack,
         })
     }
 
@@ -111,14 +109,15 @@ impl Bytecode {
         &self,
         base_from_tip: &Frame,
         free: &[f64],
+        slack: f64,
         offer: &mut impl FnMut(&[[f64; 2]]) -> bool,
     ) -> usize {
         // The smallest file that fits, since clearing it is part of the cost of a call.
         match self.registers {
-            0..=256 => self.run_in(&mut [0.0; 256], base_from_tip, free, offer),
-            257..=512 => self.run_in(&mut [0.0; 512], base_from_tip, free, offer),
-            513..=1024 => self.run_in(&mut [0.0; 1024], base_from_tip, free, offer),
-            _ => self.run_in(&mut [0.0; MAX_REGISTERS], base_from_tip, free, offer),
+            0..=256 => self.run_in(&mut [0.0; 256], base_from_tip, free, slack, offer),
+            257..=512 => self.run_in(&mut [0.0; 512], base_from_tip, free, slack, offer),
+            513..=1024 => self.run_in(&mut [0.0; 1024], base_from_tip, free, slack, offer),
+            _ => self.run_in(&mut [0.0; MAX_REGISTERS], base_from_tip, free, slack, offer),
         }
     }
 
@@ -127,6 +126,7 @@ impl Bytecode {
         registers: &mut [f64; N],
         base_from_tip: &Frame,
         free: &[f64],
+        slack: f64,
         offer: &mut impl FnMut(&[[f64; 2]]) -> bool,
     ) -> usize {
         for i in 0..3 {
@@ -135,13 +135,14 @@ impl Bytecode {
         registers[9..12].copy_from_slice(&base_from_tip.position);
         registers[POSE_REGISTERS..self.first_constant].copy_from_slice(free);
         registers[self.first_constant..][..self.constants.len()].copy_from_slice(&self.constants);
-        self.block(&self.body, registers, offer)
+        self.block(&self.body, registers, slack, offer)
     }
 
     fn block<const N: usize>(
         &self,
         items: &[Item],
         x: &mut [f64; N],
+        slack: f64,
         offer: &mut impl FnMut(&[[f64; 2]]) -> bool,
     ) -> usize {
         // N is a power of two: the mask replaces the bounds check.
@@ -168,7 +169,7 @@ impl Bytecode {
                     }
                 }
                 Item::ForEach { kind, args, out, outputs, body } => {
-                    let roots = kind.solve(&args.map(|i| x[at(i)]), self.slack);
+                    let roots = kind.solve(&args.map(|i| x[at(i)]), slack);
                     let before = accepted;
                     for i in 0..roots.count() {
                         if roots.free && accepted > before {
@@ -179,16 +180,16 @@ impl Bytecode {
                         if *outputs > 1 {
                             x[at(out[1])] = root[1];
                         }
-                        accepted += self.block(body, x, offer);
+                        accepted += self.block(body, x, slack, offer);
                     }
                 }
                 Item::IfZero { value, tolerance, then, otherwise } => {
                     let zero = x[at(*value)].abs() < *tolerance;
-                    accepted += self.block(if zero { then } else { otherwise }, x, offer);
+                    accepted += self.block(if zero { then } else { otherwise }, x, slack, offer);
                 }
                 Item::Fallback { first, otherwise } => {
-                    let found = self.block(first, x, offer);
-                    accepted += if found > 0 { found } else { self.block(otherwise, x, offer) };
+                    let found = self.block(first, x, slack, offer);
+                    accepted += if found > 0 { found } else { self.block(otherwise, x, slack, offer) };
                 }
                 Item::Emit { from, to } => {
                     let mut candidate = [[0.0; 2]; MAX_JOINTS];

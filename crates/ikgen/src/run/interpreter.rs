@@ -10,10 +10,11 @@ pub fn run(
     program: &Program,
     base_from_tip: &Frame,
     free: &[f64],
+    slack: f64,
     offer: &mut dyn FnMut(&[[f64; 2]]) -> bool,
 ) -> usize {
     let mut run =
-        Run { program, base_from_tip, free, vars: vec![0.0; program.names.len()], offer, accepted: 0 };
+        Run { program, base_from_tip, free, slack, vars: vec![0.0; program.names.len()], offer, accepted: 0 };
     run.block(&program.body);
     run.accepted
 }
@@ -22,6 +23,7 @@ struct Run<'a> {
     program: &'a Program,
     base_from_tip: &'a Frame,
     free: &'a [f64],
+    slack: f64,
     vars: Vec<f64>,
     offer: &'a mut dyn FnMut(&[[f64; 2]]) -> bool,
     accepted: usize,
@@ -39,7 +41,7 @@ impl Run<'_> {
                 }
                 Stmt::ForEach { kind, args, out, body } => {
                     let args: Vec<f64> = args.iter().map(|e| self.value(*e)).collect();
-                    let roots = kind.solve(&args, self.program.slack);
+                    let roots = kind.solve(&args, self.slack);
                     let before = self.accepted;
                     for i in 0..roots.count() {
                         if roots.free && self.accepted > before {

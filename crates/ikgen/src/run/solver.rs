@@ -6,11 +6,8 @@ use robotc_core::model::SerialChain;
 
 use super::{Bytecode, TooLarge, TrueChain, frame, interpreter};
 use crate::ir::{Program, TextError};
-use crate::kernel::chain::{self, EXACT, Frame, MAX_JOINTS, TOLERANCE};
-use crate::kernel::math::atan2;
-
-/// Solutions closer than this in every variable (radians modulo a turn, metres) are the same one.
-const SAME: f64 = 1e-7;
+use crate::kernel::candidate::WIDER;
+use crate::kernel::chain::{Frame, MAX_JOINTS};
 
 /// What runs the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -101,58 +98,39 @@ impl Solver {
 
     fn solve_frame(&self, base_from_tip: &Frame, free: &[f64], out: &mut IkSolutions) {
         out.reset(self.program.variables);
-        let mut offer = |steps: &[[f64; 2]]| self.accept(base_from_tip, free, steps, out);
-        match self.engine {
-            Engine::Bytecode => self.code.run(base_from_tip, free, &mut offer),
-            Engine::Interpreter => interpreter::run(&self.program, base_from_tip, free, &mut offer),
-        };
+        let wider = WIDER.into_iter().filter(|wider| *wider > self.program.slack);
+        for slack in std::iter::once(self.program.slack).chain(wider) {
+            if self.attempt(base_from_tip, free, slack, out) > 0 {
+                return;
+            }
+        }
     }
 
-    /// Checks a candidate, polishes it where it must be, and keeps it if it is right and new.
+    fn attempt(&self, base_from_tip: &Frame, free: &[f64], slack: f64, out: &mut IkSolutions) -> usize {
+        let mut offer = |steps: &[[f64; 2]]| self.accept(base_from_tip, free, steps, out);
+        match self.engine {
+            Engine::Bytecode => self.code.run(base_from_tip, free, slack, &mut offer),
+            Engine::Interpreter => interpreter::run(&self.program, base_from_tip, free, slack, &mut offer),
+        }
+    }
+
+    /// Keeps a candidate if it is right and new; says whether it is right.
     fn accept(&self, base_from_tip: &Frame, free: &[f64], steps: &[[f64; 2]], out: &mut IkSolutions) -> bool {
         let n = self.program.variables;
-        let distance = self.chain.forward_steps(steps).distance(base_from_tip);
-        if !distance.is_finite() {
-            return false;
-        }
+        let arm = self.chain.arm(&self.held[..n]);
         let mut values = [0.0; MAX_JOINTS];
-        for i in 0..n {
-            values[i] = if self.chain.slides[i] { steps[i][0] } else { atan2(steps[i][1], steps[i][0]) };
-        }
         for (variable, value) in self.program.free.iter().zip(free) {
             values[*variable] = *value;
         }
         let values = &mut values[..n];
-        if distance > EXACT {
-            let (links, tip) = (&self.chain.links, &self.chain.last_from_tip);
-            let left = chain::polish(links, tip, base_from_tip, values, &self.held[..n]);
-            if !(left < TOLERANCE) {
-                return false;
-            }
-            for i in 0..n {
-                if !self.chain.slides[i] && !self.held[i] {
-                    values[i] = principal(values[i]);
-                }
-            }
+        if !arm.settle(base_from_tip, steps, values) {
+            return false;
         }
-        let known = out.iter().any(|other| {
-            (0..n).all(|i| {
-                let d = (values[i] - other[i]).abs();
-                d < SAME || (!self.chain.slides[i] && (d - std::f64::consts::TAU).abs() < SAME)
-            })
-        });
-        if !known {
+        if !out.iter().any(|other| arm.same(values, other)) {
             out.push(values);
         }
         true
     }
-}
-
-/// The same angle in (-pi, pi].
-fn principal(angle: f64) -> f64 {
-    use std::f64::consts::{PI, TAU};
-    let turned = angle - TAU * ((angle + PI) / TAU).floor();
-    if turned <= -PI { turned + TAU } else { turned }
 }
 
 impl InverseKinematics for Solver {

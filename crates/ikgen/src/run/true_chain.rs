@@ -5,7 +5,8 @@ use robotc_core::Pose;
 use robotc_core::model::{ChainMotion, SerialChain};
 
 use super::frame;
-use crate::kernel::chain::{self, Frame, Link, MAX_JOINTS};
+use crate::kernel::candidate::Arm;
+use crate::kernel::chain::{Frame, Link, MAX_JOINTS};
 
 /// A serial chain in the form of the kernel: every axis is the z axis of its joint frame, offsets are folded in.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,8 +16,6 @@ pub struct TrueChain {
     pub(crate) variables: usize,
     /// Whether each variable is a length.
     pub(crate) slides: Vec<bool>,
-    /// Whether each joint has a variable of its own: then steps need no new sines.
-    direct: bool,
 }
 
 impl TrueChain {
@@ -29,7 +28,6 @@ impl TrueChain {
         let mut slides = vec![false; chain.variables.len()];
         // From the z-aligned frame after the previous joint to the described one.
         let mut aligned_from_described = Pose::identity();
-        let mut direct = true;
         for joint in &chain.joints {
             let flip = if joint.multiplier == -1.0 { -1.0 } else { 1.0 };
             let axis = joint.axis.into_inner() * flip;
@@ -45,7 +43,6 @@ impl TrueChain {
                 ratio: joint.multiplier * flip,
             });
             slides[joint.variable] = slides_here;
-            direct &= joint.multiplier * flip == 1.0;
             let z = Vector3::z_axis();
             let offset = joint.offset * flip;
             let after = match joint.motion {
@@ -58,34 +55,12 @@ impl TrueChain {
             aligned_from_described = after * described_from_aligned.inverse();
         }
         let last_from_tip = frame(&(aligned_from_described * chain.last_from_tip));
-        Some(Self { links, last_from_tip, variables: chain.variables.len(), slides, direct })
+        Some(Self { links, last_from_tip, variables: chain.variables.len(), slides })
     }
 
-    /// `base_from_tip` for the `[cos, sin]` or `[length, _]` of each variable.
-    pub(crate) fn forward_steps(&self, steps: &[[f64; 2]]) -> Frame {
-        let mut moves = [[0.0; 2]; MAX_JOINTS];
-        for (link, step) in self.links.iter().zip(&mut moves) {
-            *step = steps[link.variable];
-            if !self.direct && link.ratio != 1.0 {
-                let [x, y] = *step;
-                *step = if link.slides {
-                    [link.ratio * x, 0.0]
-                } else {
-                    crate::kernel::math::cos_sin(link.ratio * crate::kernel::math::atan2(y, x))
-                };
-            }
-        }
-        chain::forward(&self.links, &self.last_from_tip, &moves[..self.links.len()])
-    }
-
-    /// `base_from_tip` at these variable values.
-    pub(crate) fn forward(&self, values: &[f64]) -> Frame {
-        let mut moves = [[0.0; 2]; MAX_JOINTS];
-        for (link, step) in self.links.iter().zip(&mut moves) {
-            let value = link.ratio * values[link.variable];
-            *step = if link.slides { [value, 0.0] } else { crate::kernel::math::cos_sin(value) };
-        }
-        chain::forward(&self.links, &self.last_from_tip, &moves[..self.links.len()])
+    /// The chain as the kernel's functions take it.
+    pub(crate) fn arm<'a>(&'a self, held: &'a [bool]) -> Arm<'a> {
+        Arm { links: &self.links, last_from_tip: &self.last_from_tip, slides: &self.slides, held }
     }
 }
 
@@ -99,6 +74,7 @@ fn turn_z_to(axis: &Vector3<f64>) -> UnitQuaternion<f64> {
 mod tests {
     use super::*;
     use robotc_core::Seed;
+    use robotc_core::ids::Idx;
     use robotc_core::model::{ChainJoint, ChainVariable};
 
     #[test]
@@ -133,13 +109,8 @@ mod tests {
         for _ in 0..50 {
             let values: Vec<f64> = (0..5).map(|_| rng.range(-3.0, 3.0)).collect();
             let expected = frame(&chain.forward(&values));
-            assert!(kernel.forward(&values).distance(&expected) < 1e-14);
-            let steps: Vec<[f64; 2]> = values
-                .iter()
-                .zip(&kernel.slides)
-                .map(|(v, slides)| if *slides { [*v, 0.0] } else { crate::kernel::math::cos_sin(*v) })
-                .collect();
-            assert!(kernel.forward_steps(&steps).distance(&expected) < 1e-14);
+            let arm = kernel.arm(&[false; 5]);
+            assert!(arm.forward_values(&values).distance(&expected) < 1e-14);
         }
     }
 }

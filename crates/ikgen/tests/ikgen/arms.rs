@@ -1,0 +1,173 @@
+//! One arm for each class, from published dimensions.
+
+use nalgebra::{Translation3, Unit, UnitQuaternion, Vector3};
+use robotc_core::ids::Idx;
+use robotc_core::model::{ChainJoint, ChainMotion, ChainVariable, SerialChain};
+use robotc_core::{DofIdx, Pose};
+
+/// A chain whose joint frames are all parallel to the base at zero: axis and position of each joint, then of the tip.
+pub fn chain(name: &str, joints: &[([f64; 3], [f64; 3])], tip: [f64; 3]) -> SerialChain {
+    let mut at = Vector3::zeros();
+    let mut make = |i: usize, axis: &[f64; 3], point: &[f64; 3]| {
+        let point = Vector3::from(*point);
+        let step = point - at;
+        at = point;
+        ChainJoint {
+            name: format!("j{}", i + 1),
+            motion: ChainMotion::Revolute,
+            previous_from_joint: Pose::from_parts(Translation3::from(step), UnitQuaternion::identity()),
+            axis: Unit::new_normalize(Vector3::from(*axis)),
+            variable: i,
+            multiplier: 1.0,
+            offset: 0.0,
+        }
+    };
+    let joints: Vec<ChainJoint> = joints.iter().enumerate().map(|(i, (a, p))| make(i, a, p)).collect();
+    let last = Translation3::from(Vector3::from(tip) - at);
+    let variables = (0..joints.len())
+        .map(|i| ChainVariable { name: format!("j{}", i + 1), dof: DofIdx::new(i), lower: -3.1, upper: 3.1 })
+        .collect();
+    // A tip frame that is not parallel to the base.
+    let turn = UnitQuaternion::from_euler_angles(0.0, std::f64::consts::FRAC_PI_2, 0.0);
+    SerialChain { name: name.into(), joints, variables, last_from_tip: Pose::from_parts(last, turn) }
+}
+
+const X: [f64; 3] = [1.0, 0.0, 0.0];
+const Y: [f64; 3] = [0.0, 1.0, 0.0];
+const Z: [f64; 3] = [0.0, 0.0, 1.0];
+
+/// Spherical wrist, axes 2 and 3 parallel (KUKA KR6 R900).
+pub fn kr6() -> SerialChain {
+    chain(
+        "kr6",
+        &[
+            ([0.0, 0.0, -1.0], [0.0, 0.0, 0.4]),
+            (Y, [0.025, 0.0, 0.4]),
+            (Y, [0.48, 0.0, 0.4]),
+            ([-1.0, 0.0, 0.0], [0.9, 0.0, 0.435]),
+            (Y, [0.9, 0.0, 0.435]),
+            ([-1.0, 0.0, 0.0], [0.98, 0.0, 0.435]),
+        ],
+        [0.98, 0.0, 0.435],
+    )
+}
+
+/// Spherical wrist on a shoulder without any relation between its axes.
+pub fn skew() -> SerialChain {
+    chain(
+        "skew",
+        &[
+            (Z, [0.0, 0.0, 0.3]),
+            ([0.1, 1.0, 0.2], [0.1, 0.05, 0.5]),
+            ([1.0, 0.3, 0.1], [0.4, 0.1, 0.6]),
+            (X, [0.8, 0.0, 0.7]),
+            (Y, [0.8, 0.0, 0.7]),
+            (X, [0.8, 0.0, 0.7]),
+        ],
+        [0.9, 0.0, 0.7],
+    )
+}
+
+/// Axes 2, 3 and 4 parallel (Universal Robots UR5).
+pub fn ur5() -> SerialChain {
+    chain(
+        "ur5",
+        &[
+            (Z, [0.0, 0.0, 0.089159]),
+            (Y, [0.0, 0.13585, 0.089159]),
+            (Y, [0.425, 0.01615, 0.089159]),
+            (Y, [0.81725, 0.01615, 0.089159]),
+            ([0.0, 0.0, -1.0], [0.81725, 0.10915, 0.089159]),
+            (Y, [0.81725, 0.10915, -0.005491]),
+        ],
+        [0.81725, 0.19145, -0.005491],
+    )
+}
+
+/// The same turned round: axes 3, 4 and 5 parallel.
+pub fn ru5() -> SerialChain {
+    chain(
+        "ru5",
+        &[
+            (Y, [0.0, 0.0, 0.1]),
+            (Z, [0.0, 0.08, 0.1]),
+            (Y, [0.0, 0.16, 0.2]),
+            (Y, [0.4, 0.16, 0.2]),
+            (Y, [0.75, 0.16, 0.2]),
+            (Z, [0.75, 0.25, 0.2]),
+        ],
+        [0.75, 0.25, 0.3],
+    )
+}
+
+/// Spherical shoulder on six joints: the arm of `kr6` turned round.
+pub fn shoulder() -> SerialChain {
+    chain(
+        "shoulder",
+        &[
+            (X, [0.0, 0.0, 0.3]),
+            (Y, [0.0, 0.0, 0.3]),
+            (X, [0.0, 0.0, 0.3]),
+            (Y, [0.42, 0.0, 0.335]),
+            (Y, [0.88, 0.0, 0.335]),
+            (Z, [0.91, 0.0, 0.335]),
+        ],
+        [0.91, 0.0, 0.5],
+    )
+}
+
+/// Seven joints, spherical shoulder, offset elbow and wrist (Franka Panda).
+pub fn panda() -> SerialChain {
+    chain(
+        "panda",
+        &[
+            (Z, [0.0, 0.0, 0.333]),
+            (Y, [0.0, 0.0, 0.333]),
+            (Z, [0.0, 0.0, 0.649]),
+            ([0.0, -1.0, 0.0], [0.0825, 0.0, 0.649]),
+            (Z, [0.0, 0.0, 1.033]),
+            ([0.0, -1.0, 0.0], [0.0, 0.0, 1.033]),
+            ([0.0, 0.0, -1.0], [0.088, 0.0, 1.033]),
+        ],
+        [0.088, 0.0, 0.926],
+    )
+}
+
+/// Seven joints, spherical shoulder and wrist (KUKA LBR iiwa).
+pub fn iiwa() -> SerialChain {
+    chain(
+        "iiwa",
+        &[
+            (Z, [0.0, 0.0, 0.36]),
+            (Y, [0.0, 0.0, 0.36]),
+            (Z, [0.0, 0.0, 0.36]),
+            ([0.0, -1.0, 0.0], [0.0, 0.0, 0.78]),
+            (Z, [0.0, 0.0, 0.78]),
+            (Y, [0.0, 0.0, 1.18]),
+            (Z, [0.0, 0.0, 1.18]),
+        ],
+        [0.0, 0.0, 1.306],
+    )
+}
+
+/// Seven joints, offset shoulder, spherical wrist: the given joint lies between unknown ones (Fetch).
+pub fn fetch() -> SerialChain {
+    chain(
+        "fetch",
+        &[
+            (Z, [0.0, 0.0, 0.0]),
+            (Y, [0.117, 0.0, 0.06]),
+            (X, [0.336, 0.0, 0.06]),
+            (Y, [0.469, 0.0, 0.06]),
+            (X, [0.666, 0.0, 0.06]),
+            (Y, [0.79, 0.0, 0.06]),
+            (X, [0.9285, 0.0, 0.06]),
+        ],
+        [1.095, 0.0, 0.06],
+    )
+}
+
+/// All of them.
+pub fn all() -> Vec<SerialChain> {
+    vec![kr6(), skew(), ur5(), ru5(), shoulder(), panda(), iiwa(), fetch()]
+}

@@ -1,0 +1,127 @@
+//! Each class of chains, over random and singular poses.
+
+use robotc_core::Seed;
+use robotc_core::ik::{IkSolutions, InverseKinematics};
+use robotc_ikgen::report::{ProofOptions, poses, prove};
+use robotc_ikgen::run::Engine;
+use robotc_ikgen::{Options, Solver, check, compile};
+
+use crate::arms;
+
+#[test]
+fn every_pose_of_every_class_is_solved_and_nothing_is_wrong() {
+    for chain in arms::all() {
+        let compiled = compile(&chain, &Options::default()).unwrap_or_else(|r| panic!("{}: {r}", chain.name));
+        let report = prove(&compiled, 0.0, &ProofOptions { poses: 300, seed: 5 }, &|| 0.0);
+        assert!(report.emitted, "{}: {}", chain.name, report.reason);
+        for set in &report.sets {
+            let what = format!("{} ({}): {set:?}", chain.name, report.class);
+            assert_eq!(set.solved, set.poses, "{what}");
+            assert_eq!(set.wrong, 0, "{what}");
+            if set.name == "random" {
+                assert_eq!(set.recovered, set.poses, "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn classes_are_named() {
+    let class = |chain| compile(&chain, &Options::default()).unwrap().class;
+    assert_eq!(class(arms::kr6()), "6R spherical wrist, axes 2 and 3 parallel");
+    assert_eq!(class(arms::skew()), "6R spherical wrist, general shoulder");
+    assert_eq!(class(arms::ur5()), "6R three parallel axes 2-3-4, axes 5 and 6 meeting");
+    assert_eq!(class(arms::panda()), "7R spherical shoulder, axes 1 and 2 meeting (from the tip), j7 given");
+    assert!(class(arms::fetch()).ends_with("j3 given"), "{}", class(arms::fetch()));
+}
+
+#[test]
+fn chains_without_a_triple_are_refused_with_a_reason() {
+    let mut chain = arms::ur5();
+    chain.joints[3].axis = nalgebra::Unit::new_normalize(nalgebra::Vector3::new(0.3, 1.0, 0.0));
+    let refusal = compile(&chain, &Options::default()).unwrap_err();
+    assert!(refusal.reason.starts_with("6R without a triple"), "{refusal}");
+    assert!(!refusal.trace.is_empty());
+}
+
+#[test]
+fn the_caller_chooses_the_free_joint() {
+    let options = Options { free: Some(vec![2]), ..Options::default() };
+    let compiled = compile(&arms::iiwa(), &options).unwrap();
+    assert_eq!(compiled.free, [2]);
+    let nonsense = Options { free: Some(vec![9]), ..Options::default() };
+    assert!(compile(&arms::iiwa(), &nonsense).is_err());
+}
+
+#[test]
+fn rounded_descriptions_are_snapped_and_solved_exactly() {
+    let mut chain = arms::ur5();
+    for (i, joint) in chain.joints.iter_mut().enumerate() {
+        let tilt = 3e-5 * (i as f64 - 2.5);
+        joint.previous_from_joint.rotation *= nalgebra::UnitQuaternion::from_euler_angles(tilt, 0.0, -tilt);
+    }
+    let compiled = compile(&chain, &Options::default()).unwrap();
+    assert!(compiled.snap > 1e-5 && compiled.snap < 1e-3, "{}", compiled.snap);
+    let set = &poses::sets(&chain, &[], 200, Seed::new(3))[0];
+    let report = robotc_ikgen::report::prove_set(&chain, &compiled.solver(), set, &|| 0.0);
+    assert_eq!((report.solved, report.wrong), (200, 0), "{report:?}");
+    let exact = Options { tolerance: 0.0, ..Options::default() };
+    assert!(compile(&chain, &exact).is_err());
+}
+
+#[test]
+fn a_program_serves_a_recalibrated_chain() {
+    let compiled = compile(&arms::kr6(), &Options::default()).unwrap();
+    let mut measured = arms::kr6();
+    measured.joints[2].previous_from_joint.translation.vector.x += 2e-4;
+    measured.joints[4].previous_from_joint.translation.vector.y -= 1e-4;
+    let solver = Solver::from_text(&compiled.text(), &measured).unwrap();
+    let set = &poses::sets(&measured, &[], 200, Seed::new(3))[0];
+    let report = robotc_ikgen::report::prove_set(&measured, &solver, set, &|| 0.0);
+    assert_eq!(report.wrong, 0);
+    assert!(report.solved >= 198, "{report:?}");
+}
+
+#[test]
+fn interpreter_and_bytecode_agree_to_the_bit() {
+    for chain in arms::all() {
+        let compiled = compile(&chain, &Options::default()).unwrap();
+        let fast = compiled.solver();
+        let slow = compiled.solver().with_engine(Engine::Interpreter);
+        let (mut a, mut b) = (IkSolutions::new(), IkSolutions::new());
+        for set in poses::sets(&chain, &compiled.free, 40, Seed::new(8)) {
+            for vector in &set.vectors {
+                let free: Vec<f64> = compiled.free.iter().map(|v| vector[*v]).collect();
+                fast.solve(&chain.forward(vector), &free, &mut a);
+                slow.solve(&chain.forward(vector), &free, &mut b);
+                assert_eq!(a, b, "{} {}", chain.name, set.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn poses_out_of_reach_and_nonsense_have_no_solution() {
+    let compiled = compile(&arms::kr6(), &Options::default()).unwrap();
+    let solver = compiled.solver();
+    let mut out = IkSolutions::new();
+    solver.solve(&robotc_core::Pose::translation(5.0, 0.0, 0.0), &[], &mut out);
+    assert!(out.is_empty());
+    solver.solve(&robotc_core::Pose::translation(f64::NAN, 0.0, 0.0), &[], &mut out);
+    assert!(out.is_empty());
+}
+
+#[test]
+fn solutions_are_distinct_and_principal() {
+    let chain = arms::kr6();
+    let solver = compile(&chain, &Options::default()).unwrap().solver();
+    let mut out = IkSolutions::new();
+    for vector in &poses::sets(&chain, &[], 100, Seed::new(2))[0].vectors {
+        solver.solve(&chain.forward(vector), &[], &mut out);
+        let all: Vec<&[f64]> = out.iter().collect();
+        for (i, a) in all.iter().enumerate() {
+            assert!(a.iter().all(|x| *x > -std::f64::consts::PI && *x <= std::f64::consts::PI));
+            assert!(all[..i].iter().all(|b| !check::same(a, b, &[false; 6], 1e-7)));
+        }
+    }
+}
