@@ -289,3 +289,90 @@ fn integers(text: &str) -> Result<Vec<i64>, MeshError> {
         .map(|w| w.parse().map_err(|_| malformed(&format!("`{w}` is not an index"))))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{MeshError, UpAxis, read};
+
+    fn scene(nodes: &str, primitive: &str) -> String {
+        format!(
+            "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">
+             <asset><unit name=\"inch\" meter=\"0.5\"/><up_axis>Y_UP</up_axis></asset>
+             <library_geometries><geometry id=\"g\"><mesh>
+             <source id=\"p\"><float_array id=\"pa\" count=\"12\">0 0 0 1 0 0 1 1 0 0 1 0</float_array>
+             <technique_common><accessor source=\"#pa\" count=\"4\" stride=\"3\"/></technique_common></source>
+             <vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>{primitive}
+             </mesh></geometry></library_geometries>
+             <library_nodes><node id=\"part\"><translate>0 0 4</translate><instance_geometry url=\"#g\"/></node></library_nodes>
+             <library_visual_scenes><visual_scene id=\"s\">{nodes}</visual_scene></library_visual_scenes>
+             <scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>"
+        )
+    }
+
+    const TRIANGLE: &str = "<triangles count=\"1\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>\
+                            <input semantic=\"NORMAL\" source=\"#n\" offset=\"1\"/><p>0 0 1 0 2 0</p></triangles>";
+
+    #[test]
+    fn units_and_nested_transforms_place_every_instance() {
+        let nodes = "<node><translate>2 0 0</translate><rotate>0 0 1 90</rotate>\
+                     <node><scale>2 2 2</scale><instance_geometry url=\"#g\"/></node></node>\
+                     <node><instance_node url=\"#part\"/></node>";
+        let loaded = read(scene(nodes, TRIANGLE).as_bytes(), "dae").unwrap();
+        assert_eq!(loaded.up, Some(UpAxis::Y));
+        let corner = |face: usize, i: usize| loaded.mesh.triangle(face)[i];
+        // (1, 0, 0) doubled, turned to (0, 2, 0), moved to (2, 2, 0), halved by the unit.
+        assert!((corner(0, 1) - nalgebra::Point3::new(1.0, 1.0, 0.0)).norm() < 1e-15);
+        assert!((corner(1, 1) - nalgebra::Point3::new(0.5, 0.0, 2.0)).norm() < 1e-15);
+        assert_eq!(loaded.mesh.faces.len(), 2);
+    }
+
+    #[test]
+    fn mirrors_keep_the_outside_outside() {
+        let nodes = "<node><scale>-1 1 1</scale><instance_geometry url=\"#g\"/></node>";
+        let loaded = read(scene(nodes, TRIANGLE).as_bytes(), "dae").unwrap();
+        assert!(loaded.mesh.area_vector(0).z > 0.0);
+    }
+
+    #[test]
+    fn all_primitives_give_the_same_square() {
+        let input = "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>";
+        let primitives = [
+            format!("<triangles>{input}<p>0 1 2 0 2 3</p></triangles>"),
+            format!("<polylist>{input}<vcount>4</vcount><p>0 1 2 3</p></polylist>"),
+            format!("<polygons>{input}<p>0 1 2 3</p></polygons>"),
+            format!("<trifans>{input}<p>0 1 2 3</p></trifans>"),
+            format!("<tristrips>{input}<p>0 1 3 2</p></tristrips>"),
+            format!(
+                "<lines>{input}<p>0 1</p></lines><polygons>{input}<ph><p>0 1 2 3</p><h>0 1 2</h></ph></polygons>"
+            ),
+        ];
+        for primitive in primitives {
+            let text = scene("<node><instance_geometry url=\"#g\"/></node>", &primitive);
+            let mesh = read(text.as_bytes(), "dae").unwrap().mesh;
+            let area: f64 = (0..mesh.faces.len()).map(|f| mesh.area_vector(f).z / 2.0).sum();
+            assert_eq!((mesh.faces.len(), area), (2, 0.25), "{primitive}");
+        }
+    }
+
+    #[test]
+    fn malformed_files_are_refused() {
+        let input = "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>";
+        let node = "<node><instance_geometry url=\"#g\"/></node>";
+        let circle = "<node id=\"n\"><instance_node url=\"#n\"/></node>";
+        let cases = [
+            (scene(node, TRIANGLE).replace("0.5", "-1"), "the unit is not a positive number"),
+            (
+                scene(node, &format!("<polylist>{input}<vcount>9</vcount><p>0 1</p></polylist>")),
+                "a polylist has fewer",
+            ),
+            (scene(node, TRIANGLE).replace("0 0 1 0 2 0", "0 0 x 0 2 0"), "`x` is not an index"),
+            (scene(circle, TRIANGLE), "nodes are nested too deep"),
+            (scene(node, TRIANGLE).replace("</COLLADA>", ""), "line 1: `<COLLADA>` is never closed"),
+        ];
+        for (text, expected) in cases {
+            let error = read(text.as_bytes(), "dae").unwrap_err().to_string();
+            assert!(error.starts_with(expected), "{error}");
+        }
+        assert_eq!(read(scene("<node/>", TRIANGLE).as_bytes(), "dae").unwrap_err(), MeshError::Empty);
+    }
+}

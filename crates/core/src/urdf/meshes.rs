@@ -7,6 +7,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::draft::{Draft, GeometryDraft, ShapeDraft};
+use super::grouped::{Grouped, and_others};
 use super::lower::primitive;
 use super::resolve::{Resolved, resolve};
 use super::{LoadOptions, MeshPolicy};
@@ -27,6 +28,8 @@ pub(super) struct MeshSource<'a> {
     draft: &'a Draft,
     files: BTreeMap<PathBuf, Result<Arc<TriMesh>, String>>,
     scaled: BTreeMap<Scaled, Arc<TriMesh>>,
+    /// Missing meshes that are to be left out, visual and collision.
+    left_out: [Grouped; 2],
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -42,7 +45,8 @@ impl<'a> MeshSource<'a> {
         path: &'a Path,
         draft: &'a Draft,
     ) -> Self {
-        Self { system, options, path, draft, files: BTreeMap::new(), scaled: BTreeMap::new() }
+        let left_out = [Grouped::default(), Grouped::default()];
+        Self { system, options, path, draft, files: BTreeMap::new(), scaled: BTreeMap::new(), left_out }
     }
 
     /// The shape of a visual; `None` when its mesh is left out.
@@ -85,7 +89,11 @@ impl<'a> MeshSource<'a> {
         let Some(Resolved { path, guessed }) =
             resolve(self.system, &self.options.packages, self.path, &uri.text)
         else {
-            found.push(self.missing(&uri.text, uri.span, link, purpose));
+            if self.options.meshes == MeshPolicy::SkipMissing {
+                self.left_out[purpose as usize].add(uri.span, &uri.text);
+            } else {
+                found.push(self.missing(&uri.text, uri.span, link, purpose));
+            }
             return None;
         };
         if guessed && !self.files.contains_key(&path) {
@@ -160,12 +168,22 @@ impl<'a> MeshSource<'a> {
             false => format!("moved by the joints {}", joints.join(", ")),
         };
         let message = format!("collision mesh `{uri}` of link `{link}` is missing; the link is {affected}");
-        if self.is_fatal(purpose) {
-            Diagnostic::error("R0302", message).at(span, "no such file").hint(hint)
-        } else {
-            let message = format!("{message}, and touches nothing without it");
-            Diagnostic::warning("R0302", message).at(span, "no such file").hint(hint)
-        }
+        Diagnostic::error("R0302", message).at(span, "no such file").hint(hint)
+    }
+
+    /// Tells what was left out, once for each use: with all meshes absent there would be a hundred findings.
+    pub(super) fn finish(self, found: &mut Diagnostics) {
+        let [visual, collision] = self.left_out;
+        visual.finish(found, |count, first| {
+            let others = and_others(count);
+            Diagnostic::warning("R0301", format!("visual mesh `{first}`{others} is missing; left out"))
+        });
+        collision.finish(found, |count, first| {
+            let others = and_others(count);
+            let message =
+                format!("collision mesh `{first}`{others} is missing; links without one touch nothing");
+            Diagnostic::warning("R0302", message)
+        });
     }
 
     /// Names of the moving joints from the root to `link`.

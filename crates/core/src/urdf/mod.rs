@@ -106,5 +106,10 @@ fn lower(
         }
     };
     let mut meshes = meshes::MeshSource::new(system, options, path, &draft);
-    lower::lower(&draft, &robot, &mut meshes, found)
+    let model = lower::lower(&draft, &robot, &mut meshes, found);
+    meshes.finish(found);
+    model
 }
+
+#[cfg(test)]
+mod tests;

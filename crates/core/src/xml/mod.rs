@@ -84,3 +84,6 @@ impl Element {
         texts.collect()
     }
 }
+
+#[cfg(test)]
+mod tests;

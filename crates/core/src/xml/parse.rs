@@ -2,7 +2,7 @@
 
 use super::scan::{Scanner, is_xml_char, resolve_entities, starts_name};
 use super::{Attribute, Element, Node};
-use crate::diag::{Diagnostic, Diagnostics, FileId, Span};
+use crate::diag::{Diagnostic, Diagnostics, FileId, Severity, Span};
 
 /// Bounds that keep hostile input from using up stack or memory.
 #[derive(Debug, Clone, Copy)]
@@ -40,6 +40,10 @@ pub(crate) fn parse(text: &str, file: FileId, limits: Limits) -> (Option<Element
         return (None, parser.found);
     }
     parser.run(limits.depth);
+    if parser.root.is_none() && !parser.found.has_errors() {
+        let start = Span { file, start: 0, end: 0 };
+        parser.error(start, "nothing in here", "there is no XML element in this file");
+    }
     (parser.root, parser.found)
 }
 
@@ -57,6 +61,9 @@ struct Parser<'a> {
 
 impl Parser<'_> {
     fn error(&mut self, span: Span, label: &str, message: impl Into<String>) {
+        if self.found.count(Severity::Error) >= MOST_FAULTS {
+            return;
+        }
         self.found.push(Diagnostic::error("R0201", message).at(span, label));
     }
 
@@ -67,7 +74,7 @@ impl Parser<'_> {
     fn run(&mut self, depth: usize) {
         self.scanner.eat("\u{feff}");
         self.first = self.scanner.position();
-        while !self.scanner.is_at_end() && self.found.iter().count() < MOST_FAULTS {
+        while !self.scanner.is_at_end() && self.found.count(Severity::Error) < MOST_FAULTS {
             if self.root.is_some() && self.open.is_empty() {
                 self.after_root();
                 return;
@@ -220,6 +227,7 @@ impl Parser<'_> {
         let name = self.scanner.name().to_owned();
         let span = self.scanner.span_from(start);
         let mut element = Element { name, attributes: Vec::new(), children: Vec::new(), span };
+        let mut told = false;
         loop {
             self.scanner.skip_space();
             if self.scanner.eat("/>") {
@@ -231,14 +239,17 @@ impl Parser<'_> {
                 return self.open.push(element);
             }
             if self.scanner.is_at_end() || self.scanner.rest().starts_with('<') {
-                self.error(span, "this tag", format!("the tag `<{}` never ends with `>`", element.name));
+                if !told {
+                    self.error(span, "this tag", format!("the tag `<{}` never ends with `>`", element.name));
+                }
                 return self.open.push(element);
             }
-            self.attribute(&mut element);
+            told = !self.attribute(&mut element);
         }
     }
 
-    fn attribute(&mut self, element: &mut Element) {
+    /// Reads one attribute; whether its value ended where it should.
+    fn attribute(&mut self, element: &mut Element) -> bool {
         let start = self.scanner.position();
         let name = self.scanner.name().to_owned();
         let name_span = self.scanner.span_from(start);
@@ -250,12 +261,12 @@ impl Parser<'_> {
                 format!("a character that belongs to no attribute of `<{}>`", element.name),
             );
             self.scanner.advance(span.end - span.start);
-            return;
+            return true;
         }
         self.scanner.skip_space();
         if !self.scanner.eat("=") {
             self.error(name_span, "no value", format!("attribute `{name}` has no value"));
-            return;
+            return true;
         }
         self.scanner.skip_space();
         let quote = match self.scanner.rest().chars().next() {
@@ -263,14 +274,15 @@ impl Parser<'_> {
             _ => {
                 self.error(name_span, "not in quotes", format!("the value of `{name}` is not in quotes"));
                 self.scanner.take_until(|c| c.is_ascii_whitespace() || c == '>' || c == '/');
-                return;
+                return true;
             }
         };
         self.scanner.advance(1);
         let value_start = self.scanner.position();
         let raw = self.scanner.take_until(|c| c == quote || c == '<');
         let span = self.scanner.span_from(value_start);
-        if self.scanner.rest().starts_with(quote) {
+        let is_closed = self.scanner.rest().starts_with(quote);
+        if is_closed {
             self.scanner.advance(1);
         } else {
             let message = format!("the value of `{name}` has no closing quote before the next `<`");
@@ -285,6 +297,7 @@ impl Parser<'_> {
         } else {
             element.attributes.push(Attribute { name, value, span });
         }
+        is_closed
     }
 
     /// Warns once for each prefix that no ancestor declares. Scopes are not tracked: a prefix counts as declared from

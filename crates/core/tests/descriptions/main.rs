@@ -4,4 +4,6 @@ mod arms;
 mod broken;
 mod data;
 mod kinematics;
+mod meshes;
+mod mutations;
 mod robots;
