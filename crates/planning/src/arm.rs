@@ -223,10 +223,10 @@ fn nearest_alias(axis: &Axis, value: f64, near: f64) -> Option<f64> {
     let first = ((axis.lower - LIMIT_SLACK - best) / TAU).ceil() as i64;
     let last = ((axis.upper + LIMIT_SLACK - best) / TAU).floor() as i64;
     for turns in first.max(-8)..=last.min(8) {
-        if let Some(alias) = within(axis, best + TAU * turns as f64) {
-            if found.is_none_or(|f| (alias - near).abs() < (f - near).abs()) {
-                found = Some(alias);
-            }
+        if let Some(alias) = within(axis, best + TAU * turns as f64)
+            && found.is_none_or(|f| (alias - near).abs() < (f - near).abs())
+        {
+            found = Some(alias);
         }
     }
     found

@@ -109,12 +109,12 @@ impl<'a, 's> PickSampler<'a, 's> {
         let index = self.alive[self.cursor];
         let grasp = &self.set.grasps[index];
         let world_from_tool = self.scene.world_from_body(self.cx.object) * grasp.object_from_tool;
-        if self.round == 0 {
-            if let Err((filter, reason)) = self.hand_check(grasp, &world_from_tool) {
-                self.rejections.add_because(filter, reason);
-                self.alive.remove(self.cursor);
-                return Ok(None);
-            }
+        if self.round == 0
+            && let Err((filter, reason)) = self.hand_check(grasp, &world_from_tool)
+        {
+            self.rejections.add_because(filter, reason);
+            self.alive.remove(self.cursor);
+            return Ok(None);
         }
         self.cursor += 1;
         let near = self.cx.arm_values(&self.q);

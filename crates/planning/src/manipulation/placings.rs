@@ -5,6 +5,7 @@ use robotc_core::ik::IkSolutions;
 use robotc_core::rng::Rng;
 use robotc_core::{Configuration, Pose};
 
+use super::picks::hand_is_free;
 use super::problem::GoalContext;
 use super::rejections::{Filter, Rejections};
 use super::stretch::{back_off, fine_checker, fingers_move, raise, state_is_free};
@@ -109,11 +110,11 @@ impl PlacingSampler<'_, '_, '_> {
         let Some(there) = self.destinations.scene(index, &cx, p.scene, self.rejections) else {
             return Some(false);
         };
-        if round == 0 {
-            if let Err(reason) = super::picks::hand_is_free(&cx, there, p.grasp, &world_from_tool) {
-                self.rejections.add_because(Filter::HandAtDestination, reason);
-                return Some(false);
-            }
+        if round == 0
+            && let Err(reason) = hand_is_free(&cx, there, p.grasp, &world_from_tool)
+        {
+            self.rejections.add_because(Filter::HandAtDestination, reason);
+            return Some(false);
         }
         let free = free_values(&cx, round, &p.near, self.rng);
         let mut scratch = IkSolutions::new();
