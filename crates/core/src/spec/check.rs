@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use super::describe::count;
 use super::document;
-use super::validate::count;
 use super::{ParameterTable, RobotSpec, TaskSpec, file, load_robot, load_task};
 use crate::diag::{Diagnostic, Diagnostics, Severity, Sources};
 use crate::model::RobotModel;

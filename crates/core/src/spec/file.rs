@@ -3,10 +3,11 @@
 use std::path::{Component, Path, PathBuf};
 
 use super::SpecKind;
+use super::describe::value_kind;
 use super::document::{self, Table};
 use super::parameters::{ParameterTable, ParameterValue, Parameters};
 use super::schema::Kind;
-use super::validate::{validate, value_kind};
+use super::validate::validate;
 use crate::diag::{Diagnostic, Diagnostics, FileId, Sources, Span};
 use crate::system::{ReadError, System};
 

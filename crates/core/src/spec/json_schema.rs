@@ -2,10 +2,10 @@
 
 use serde_json::{Map, Value, json};
 
+use super::describe::value_kind;
 use super::document;
 use super::parameters::{ParameterDefault, ParameterTable};
 use super::schema::{Key, Kind, Length, Presence, Range, Rule, TableSchema};
-use super::validate::value_kind;
 use super::{SpecKind, SpecKind::*};
 use crate::diag::{Diagnostics, Sources};
 

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use super::describe::count;
 use super::document::{Node, Table};
-use super::validate::count;
 use crate::diag::{Diagnostic, Diagnostics, Span, nearest};
 use crate::ids::{DofIdx, Idx, LinkIdx};
 use crate::model::{Drive, JointMotion, Origin, RobotModel};

@@ -9,6 +9,7 @@
 mod annotations;
 mod arms;
 mod check;
+mod describe;
 mod document;
 mod extent;
 mod file;

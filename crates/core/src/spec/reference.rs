@@ -1,8 +1,8 @@
 //! The reference of all keys, as Markdown.
 
 use super::SpecKind;
+use super::describe::describe;
 use super::schema::{Key, Kind, Presence, TableSchema};
-use super::validate::describe;
 
 /// A Markdown section for each table of the format, with one row for each key.
 pub fn reference(kind: SpecKind) -> String {

@@ -87,7 +87,7 @@ fn base_body(bodies: &Bodies, hands: &[Hand], start: usize, body: usize) -> usiz
 
 fn is_limb(bodies: &Bodies, hands: &[Hand], body: usize) -> bool {
     let below = bodies.subtree(body);
-    let depth = usize::from(bodies.is_driven(body)) + bodies.depth(body, true);
+    let depth = usize::from(bodies.is_driven(body)) + bodies.depth(body);
     depth >= 3 || hands.iter().any(|hand| below.contains(&hand.body))
 }
 

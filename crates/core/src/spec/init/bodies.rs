@@ -30,6 +30,8 @@ pub(super) struct Body {
     pub(super) parent: Option<usize>,
     /// The bodies below.
     pub(super) children: Vec<usize>,
+    /// Length of the way along joint origins from the root to its joint; metres.
+    way: f64,
 }
 
 /// All bodies of a robot, parents before children; the root is the first.
@@ -41,12 +43,16 @@ pub(super) struct Bodies<'a> {
 
 impl<'a> Bodies<'a> {
     pub(super) fn of(model: &'a RobotModel) -> Self {
-        let root = Body { links: vec![model.root()], joint: None, parent: None, children: Vec::new() };
+        let root =
+            Body { links: vec![model.root()], joint: None, parent: None, children: Vec::new(), way: 0.0 };
         let mut all = vec![root];
         let mut of_link = vec![0; model.links().len()];
+        let mut way_to_link = vec![0.0; model.links().len()];
         for &index in model.topological_order() {
             let joint = &model.joints()[index];
             let above = of_link[joint.parent.index()];
+            let way = way_to_link[joint.parent.index()] + joint.parent_from_joint().translation.vector.norm();
+            way_to_link[joint.child.index()] = way;
             if joint.motion == JointMotion::Fixed {
                 of_link[joint.child.index()] = above;
                 all[above].links.push(joint.child);
@@ -59,6 +65,7 @@ impl<'a> Bodies<'a> {
                     joint: Some(index),
                     parent: Some(above),
                     children: Vec::new(),
+                    way,
                 });
             }
         }
@@ -89,13 +96,17 @@ impl<'a> Bodies<'a> {
         found
     }
 
-    /// Most joints one below the other under `body`; those that mimic do not count when `driven` is set.
-    pub(super) fn depth(&self, body: usize, driven: bool) -> usize {
-        let below = |&child: &usize| {
-            let counts = !driven || self.is_driven(child);
-            usize::from(counts) + self.depth(child, driven)
-        };
-        self.all[body].children.iter().map(below).max().unwrap_or(0)
+    /// Most driven joints one below the other under `body`.
+    pub(super) fn depth(&self, body: usize) -> usize {
+        // Parents come before children, so each body finds the depth of its parent.
+        let mut depths = vec![0; self.all.len()];
+        let mut deepest = 0;
+        for &below in self.subtree(body).iter().skip(1) {
+            let above = self.all[below].parent.map_or(0, |parent| depths[parent]);
+            depths[below] = above + usize::from(self.is_driven(below));
+            deepest = deepest.max(depths[below]);
+        }
+        deepest
     }
 
     /// Whether the joint above a body has a value of its own.
@@ -124,20 +135,8 @@ impl<'a> Bodies<'a> {
         })
     }
 
-    /// Length of the way along joint origins from `top` to `body`; metres.
+    /// Length of the way along joint origins from `top` down to `body`; metres.
     pub(super) fn reach(&self, top: usize, body: usize) -> f64 {
-        let Some(joint) = self.all[body].joint.filter(|_| body != top) else { return 0.0 };
-        let joint = &self.model.joints()[joint];
-        let parent = self.all[body].parent.unwrap_or(0);
-        // The joint may hang on any link of the body above: add the fixed joints on the way.
-        let first = self.all[parent].links[0];
-        let fixed: f64 = self
-            .model
-            .joints_between(first, joint.parent)
-            .unwrap_or_default()
-            .iter()
-            .map(|&j| self.model.joints()[j].parent_from_joint().translation.vector.norm())
-            .sum();
-        self.reach(top, parent) + fixed + joint.parent_from_joint().translation.vector.norm()
+        self.all[body].way - self.all[top].way
     }
 }

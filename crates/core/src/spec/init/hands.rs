@@ -63,8 +63,7 @@ pub(super) fn find(bodies: &Bodies, kinematics: &Kinematics) -> Vec<Hand> {
 /// Whether what is below a body is short against what is above, and none of it is called otherwise.
 fn may_be_palm(bodies: &Bodies, body: usize) -> bool {
     let above = bodies.path(0, body).iter().filter(|&&b| bodies.is_driven(b)).count();
-    if bodies.all[body].children.is_empty() || above < ARM_JOINTS || bodies.depth(body, true) > FINGER_JOINTS
-    {
+    if bodies.all[body].children.is_empty() || above < ARM_JOINTS || bodies.depth(body) > FINGER_JOINTS {
         return false;
     }
     let below = bodies.subtree(body);

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::hands::Hand;
 use super::{Guess, GuessedArm, InitOptions, groups, relative};
 use crate::ids::LinkIdx;
-use crate::model::{Configuration, DynamicLimits, RobotModel};
+use crate::model::{Dof, DynamicLimits, RobotModel};
 use crate::robot::Base;
 use crate::spec::grippers::open_values;
 
@@ -78,12 +78,22 @@ fn arm_text(arm: &GuessedArm, guess: &Guess) -> String {
     }
     let (home, why) = match &arm.home {
         Some(home) => (home.clone(), "the resting state of the SRDF"),
-        None => (
-            Configuration::neutral(model).select(&arm.dofs),
-            "zero, or the nearest limit; choose a better one",
-        ),
+        None => {
+            let home = arm.dofs.iter().map(|&dof| resting(&model.dofs()[dof])).collect();
+            (home, "zero where far from limits, else half-way; choose a better one")
+        }
     };
     text + &format!("home = {} # {why}\n", numbers(&home))
+}
+
+/// Zero when it keeps a tenth of the range from either limit, else the middle of the range, to four digits.
+fn resting(dof: &Dof) -> f64 {
+    let margin = 0.1 * (dof.upper - dof.lower);
+    if !margin.is_finite() || (dof.lower + margin <= 0.0 && 0.0 <= dof.upper - margin) {
+        return 0.0_f64.clamp(dof.lower, dof.upper);
+    }
+    let middle = (dof.lower + dof.upper) / 2.0;
+    ((middle * 1e4).round() / 1e4).clamp(dof.lower, dof.upper) + 0.0
 }
 
 fn hand_text(name: &str, hand: &Hand, model: &RobotModel) -> String {
