@@ -1,7 +1,6 @@
 //! Reading specifications for commands: findings are printed, and errors end the command.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use robotc_core::spec::{self, SpecKind, TaskSpec};
 use robotc_core::{Sources, diag::Diagnostics};
@@ -25,16 +24,12 @@ pub(crate) fn kind_of(path: &Path) -> Option<SpecKind> {
 /// Reads a robot or task specification into what the knowledge base compiles.
 pub(crate) fn project(path: &Path) -> Outcome<Project> {
     match kind_of(path) {
-        Some(SpecKind::Task) => {
-            let spec = task(path)?;
-            Ok(Project::of_task(Arc::new(spec.task), spec.parameters))
-        }
+        Some(SpecKind::Task) => Ok(Project::of_task(&task(path)?)),
         Some(SpecKind::Robot) => {
             let mut sources = Sources::new();
             let table = robotc_kb::kinds::parameter_table();
             let (spec, found) = spec::load_robot(&OsSystem, &mut sources, path, &table);
-            let spec = accept(spec, &found, &sources)?;
-            Ok(Project::of_robot(spec.robot, spec.parameters))
+            Ok(Project::of_robot(&accept(spec, &found, &sources)?))
         }
         None => Err(Failure::Input(format!(
             "{} is neither a *.robot.toml nor a *.task.toml; `robotc init` writes one from a URDF",
