@@ -4,6 +4,7 @@
 mod args;
 mod commands;
 mod input;
+mod knowledge;
 mod output;
 mod progress;
 

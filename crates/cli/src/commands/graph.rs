@@ -1,0 +1,39 @@
+//! `robotc graph`: the artefacts of a specification and what each is computed from.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::knowledge;
+use crate::output::{Outcome, print, print_text};
+
+/// Show the graph of artefacts of a specification
+#[derive(Args)]
+#[command(
+    after_help = "Examples:\n  robotc graph mug.task.toml\n  robotc graph --dot mug.task.toml | dot -Tsvg > graph.svg"
+)]
+pub(crate) struct Graph {
+    /// A `*.robot.toml` or `*.task.toml` file
+    file: PathBuf,
+    /// In the language of Graphviz
+    #[arg(long)]
+    dot: bool,
+}
+
+pub(crate) fn run(args: &Graph) -> Outcome {
+    let graph = knowledge::plan(&crate::input::project(&args.file)?)?;
+    if args.dot {
+        print_text(&graph.to_dot());
+        return Ok(());
+    }
+    for node in graph.nodes() {
+        print(&format!("{} {} ({})", node.kind_name(), node.subjects.join(", "), node.recipe.short()));
+        for (info, value) in node.kind.info().parameters.iter().zip(&node.parameters) {
+            print(&format!("    {} = {}", info.name, robotc_kb::parameters::show(value)));
+        }
+        for input in &node.inputs {
+            print(&format!("    from {}", graph.node(*input).title()));
+        }
+    }
+    Ok(())
+}
