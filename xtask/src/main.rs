@@ -1,6 +1,7 @@
 //! Development tasks: `cargo xtask NAME`. One file per task, one line each in [`TASKS`].
 
 mod assets;
+mod kill;
 mod test;
 mod tidy;
 
@@ -11,6 +12,7 @@ type Task = (&'static str, &'static str, fn(&[String]) -> anyhow::Result<()>);
 
 const TASKS: &[Task] = &[
     ("assets", "write the geometry in specs/, or --check it", assets::run),
+    ("kill", "compile, killed at random moments, [TRIALS]", kill::run),
     ("test", "all tests: format, lints, Rust, Python", test::run),
     ("tidy", "architecture invariants that text can show", tidy::run),
 ];

@@ -1,25 +1,46 @@
-//! `robotc explain`: what a diagnostic code means.
+//! `robotc explain`: what a diagnostic code means, or why artefacts are computed.
+
+use std::path::Path;
 
 use clap::Args;
 use robotc_core::diag::{CODES, explain, nearest};
+use robotc_kb::Knowledge;
+use robotc_kb::explain::Fate;
 
+use crate::knowledge::{self, StoreArgs};
 use crate::output::{Failure, Outcome, print};
 
-/// Explain a diagnostic code, or list all of them
+/// Explain a diagnostic code, or why each artefact of a specification was or will be computed
 #[derive(Args)]
-#[command(after_help = "Examples:\n  robotc explain R0102\n  robotc explain")]
+#[command(
+    after_help = "Examples:\n  robotc explain R0102\n  robotc explain\n  robotc explain mug.task.toml\n  \
+    robotc explain mug.task.toml grasp_set"
+)]
 pub(crate) struct Explain {
-    /// The code, such as R0102; without it all codes are listed
-    code: Option<String>,
+    /// A code such as R0102, or a `*.robot.toml` or `*.task.toml` file; without it all codes are listed
+    what: Option<String>,
+    /// With a file: only artefacts whose kind or subject contains this
+    filter: Option<String>,
+    #[command(flatten)]
+    store: StoreArgs,
 }
 
 pub(crate) fn run(args: &Explain) -> Outcome {
-    let Some(code) = &args.code else {
-        for info in CODES {
-            print(&format!("{}  {}", info.code, info.title));
+    match args.what.as_deref() {
+        None => {
+            for info in CODES {
+                print(&format!("{}  {}", info.code, info.title));
+            }
+            Ok(())
         }
-        return Ok(());
-    };
+        Some(file) if crate::input::kind_of(Path::new(file)).is_some() => {
+            artefacts(Path::new(file), args.filter.as_deref().unwrap_or_default(), &args.store)
+        }
+        Some(code) => diagnostic(code),
+    }
+}
+
+fn diagnostic(code: &str) -> Outcome {
     match explain(code) {
         Some(info) => {
             print(&format!("{}: {}\n\n{}", info.code, info.title, info.text));
@@ -31,4 +52,27 @@ pub(crate) fn run(args: &Explain) -> Outcome {
             Err(Failure::Input(format!("there is no diagnostic code {code}{hint}")))
         }
     }
+}
+
+fn artefacts(file: &Path, filter: &str, store: &StoreArgs) -> Outcome {
+    let graph = knowledge::plan(&crate::input::project(file)?)?;
+    let known = Knowledge::resolve(&graph, &store.open()?)?;
+    let fates = robotc_kb::explain::explain(&known)?;
+    for (node, fate) in graph.nodes().iter().zip(&fates) {
+        let title = node.title();
+        if !title.contains(filter) {
+            continue;
+        }
+        print(&match fate {
+            Fate::Reused(key, reason) => {
+                format!("{title}: there, key {}; computed because: {reason}", key.short())
+            }
+            Fate::Computed(reason) => format!("{title}: will be computed: {reason}"),
+            Fate::Waits(input) => format!(
+                "{title}: waits for {}, and is computed unless that comes out as it was",
+                graph.node(*input).title()
+            ),
+        });
+    }
+    Ok(())
 }
