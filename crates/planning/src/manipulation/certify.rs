@@ -1,7 +1,8 @@
 //! An independent look at a finished plan: replays it densely and believes nothing that the planner found.
 
+use robotc_core::ids::Idx;
 use robotc_core::task::Goal;
-use robotc_core::{Configuration, Trajectory};
+use robotc_core::{BodyIdx, Configuration, Trajectory};
 use thiserror::Error;
 
 use super::plan::{Event, Held, Plan, Segment, SegmentKind};
@@ -76,7 +77,11 @@ pub fn certify(
                 let world_from_link =
                     scene.world_from_robot() * problem.kinematics.root_from_link(&q, what.link);
                 let expected = world_from_link * what.link_from_object;
-                let offset = expected.inv_mul(scene.world_from_body(what.object)).translation.vector.norm();
+                let offset = expected
+                    .inv_mul(scene.world_from_body(BodyIdx::new(what.object)))
+                    .translation
+                    .vector
+                    .norm();
                 if offset > PLACED {
                     return Err(wrong(end, "the object is not where it is picked up".into()));
                 }
@@ -92,7 +97,7 @@ pub fn certify(
                 if reached.inv_mul(world_from_object).translation.vector.norm() > PLACED {
                     return Err(wrong(end, "the object is not put where the plan says".into()));
                 }
-                scene.place(*object, *world_from_object);
+                scene.place(BodyIdx::new(*object), *world_from_object);
             }
             None => {}
         }
@@ -109,7 +114,7 @@ fn rules(
 ) -> Rules {
     let Goal::Place { object, .. } = problem.task.goals[segment.goal];
     let held = segment.held.as_ref().map(|h| Grip {
-        body: h.object,
+        body: BodyIdx::new(h.object),
         link: h.link,
         link_from_body: h.link_from_object,
     });
@@ -122,7 +127,7 @@ fn rules(
         margin: 0.0,
         held,
         gripper: links.to_vec(),
-        target: near.then_some(object),
+        target: near.then_some(BodyIdx::new(object)),
         sink: stands.then_some(options.sink),
     }
 }

@@ -108,7 +108,7 @@ impl<'a, 's> PickSampler<'a, 's> {
         }
         let index = self.alive[self.cursor];
         let grasp = &self.set.grasps[index];
-        let world_from_tool = self.scene.world_from_body(self.cx.object) * grasp.object_from_tool;
+        let world_from_tool = self.scene.world_from_body(self.cx.body()) * grasp.object_from_tool;
         if self.round == 0
             && let Err((filter, reason)) = self.hand_check(grasp, &world_from_tool)
         {
@@ -145,7 +145,7 @@ impl<'a, 's> PickSampler<'a, 's> {
         let open = cx.with_fingers(&self.q, &cx.gripper().preshapes[grasp.preshape].values);
         state_is_free(&mut fine_checker(&cx, self.scene, &open, cx.touching()), at)
             .map_err(because(Filter::ArmAtGrasp))?;
-        let world_from_object = self.scene.world_from_body(cx.object);
+        let world_from_object = self.scene.world_from_body(cx.body());
         let direction: Vector3<f64> = -(world_from_object.rotation * grasp.approach_in_object.into_inner());
         let mut approach =
             back_off(&cx, self.scene, &open, at, &direction).map_err(because(Filter::Approach))?;

@@ -37,9 +37,9 @@ impl Destinations {
     ) -> Option<&Scene> {
         if self.scenes[index].is_none() {
             let pose = self.poses[index];
-            let free = scene.body_against_bodies(cx.object, pose, cx.options.sink);
+            let free = scene.body_against_bodies(cx.body(), pose, cx.options.sink);
             self.scenes[index] = Some(match free {
-                Ok(()) => Some(scene.with_body_at(cx.object, pose)),
+                Ok(()) => Some(scene.with_body_at(cx.body(), pose)),
                 Err(touch) => {
                     let reason = scene.describe(touch.into()).unwrap_or_default();
                     rejections.add_because(Filter::Destination, reason);

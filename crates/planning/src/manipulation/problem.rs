@@ -1,8 +1,9 @@
 //! What a pick-and-place planner is given.
 
+use robotc_core::ids::Idx;
 use robotc_core::robot::{Gripper, Robot};
 use robotc_core::task::{Goal, Task};
-use robotc_core::{Configuration, DofIdx, Kinematics, LinkIdx, Pose};
+use robotc_core::{BodyIdx, Configuration, DofIdx, Kinematics, LinkIdx, Pose};
 
 use crate::arm::ArmModel;
 use crate::cartesian::LineOptions;
@@ -13,7 +14,7 @@ use crate::smooth::{DEFAULT_SMOOTHERS, Smoother};
 use crate::space::{Axis, Space};
 use crate::timing::{MotionLimits, TimingOptions};
 
-/// A task with all that is known about it. `scene` holds the objects of the task first, in their order.
+/// A task with all that is known about it.
 #[derive(Clone, Copy)]
 pub struct Manipulation<'a> {
     /// What shall happen.
@@ -22,7 +23,8 @@ pub struct Manipulation<'a> {
     pub kinematics: &'a Kinematics,
     /// The arm that does it.
     pub arm: &'a ArmModel,
-    /// Robot and bodies as they are now; body number i is object number i of the task, obstacles follow.
+    /// Robot and bodies as they are now; as in `World::of_task`, body number i is object number i of the task, and the
+    /// obstacles follow.
     pub scene: &'a Scene,
     /// The grasp set of each object of the task, in their order.
     pub grasps: &'a [&'a GraspSet],
@@ -121,6 +123,11 @@ impl<'a> GoalContext<'a> {
         &self.problem.task.goals[self.number]
     }
 
+    /// The object in the scene.
+    pub(super) fn body(&self) -> BodyIdx {
+        BodyIdx::new(self.object)
+    }
+
     pub(super) fn object_name(&self) -> &'a str {
         &self.problem.task.objects[self.object].name
     }
@@ -132,7 +139,7 @@ impl<'a> GoalContext<'a> {
 
     /// Rules near the object: the open gripper may touch it.
     pub(super) fn touching(&self) -> Rules {
-        Rules { target: Some(self.object), gripper: self.gripper_links.to_vec(), ..Rules::default() }
+        Rules { target: Some(self.body()), gripper: self.gripper_links.to_vec(), ..Rules::default() }
     }
 
     /// Rules of the straight motions with the object: it stands on something at one end.
@@ -149,7 +156,7 @@ impl<'a> GoalContext<'a> {
     pub(super) fn grip(&self, object_from_tool: &Pose) -> Grip {
         let gripper = self.gripper();
         Grip {
-            body: self.object,
+            body: self.body(),
             link: gripper.palm,
             link_from_body: gripper.palm_from_tool * object_from_tool.inverse(),
         }

@@ -2,8 +2,9 @@
 
 use std::fmt;
 
+use robotc_core::ids::Idx;
 use robotc_core::task::Goal;
-use robotc_core::{Configuration, Pose, Seed, Trajectory};
+use robotc_core::{BodyIdx, Configuration, Pose, Seed, Trajectory};
 use thiserror::Error;
 
 use super::destinations::destination_poses;
@@ -117,7 +118,7 @@ pub fn pick_and_place(
             match plan_goal(&cx, &scene, &q, budget, seed, observer) {
                 Ok(reached) => {
                     reached.segments.iter().for_each(|s| observer.segment(s));
-                    scene.place(object, reached.choice.world_from_object);
+                    scene.place(BodyIdx::new(object), reached.choice.world_from_object);
                     q = reached.q;
                     plan.segments.extend(reached.segments);
                     plan.choices.push(reached.choice);
@@ -376,7 +377,7 @@ impl Motions {
         let now = q.select(&gripper.dofs);
         let preshape = &gripper.preshapes[grasp.preshape].values;
         let world_from_object: Pose = placing.world_from_object;
-        let there = scene.with_body_at(cx.object, world_from_object);
+        let there = scene.with_body_at(cx.body(), world_from_object);
         let finger_limits = motion_limits(robot, &gripper.dofs);
         let mut made = Maker { cx, q: q.clone(), finger_limits, segments: Vec::new() };
 

@@ -7,13 +7,14 @@ use nalgebra::{UnitQuaternion, Vector3};
 use robotc_core::geom::{ConvexParts, box_part};
 use robotc_core::model::Shape;
 use robotc_core::task::{Destination, Goal, Object, Task};
+use robotc_core::world::World;
 use robotc_core::{Kinematics, LinkIdx, Pose, Seed, TypedVec};
 
 use super::*;
 use crate::arm::ArmModel;
 use crate::budget::{Budget, Interrupt};
 use crate::grasp::{Grasp, GraspSet};
-use crate::scene::{Scene, SceneBody};
+use crate::scene::Scene;
 use crate::testbed;
 
 /// Top of the table.
@@ -52,12 +53,12 @@ fn grasps() -> GraspSet {
     GraspSet::new("hand", "box", all)
 }
 
-fn link_parts(robot: &robotc_core::Robot) -> TypedVec<LinkIdx, ConvexParts> {
+fn link_parts(robot: &robotc_core::Robot) -> TypedVec<LinkIdx, Arc<ConvexParts>> {
     let part = |g: &robotc_core::model::Geometry| match g.shape {
         Shape::Box { size } => box_part(Vector3::from(size)).transformed(&g.origin.pose()),
         _ => panic!("the test arm is made of boxes"),
     };
-    robot.model.links().iter().map(|l| l.collisions.iter().map(part).collect()).collect()
+    robot.model.links().iter().map(|l| Arc::new(l.collisions.iter().map(part).collect())).collect()
 }
 
 /// Boxes at these places, to be moved to those; obstacles by size and centre.
@@ -65,29 +66,22 @@ fn bench(rail: bool, moves: &[([f64; 2], Goal)], obstacles: &[([f64; 3], [f64; 3
     let robot = Arc::new(testbed::robot(rail));
     let kinematics = Kinematics::new(robot.model.clone());
     let standing = |[x, y]: [f64; 2]| Pose::translation(x, y, STANDING);
-    let objects: Vec<Object> = moves
-        .iter()
-        .enumerate()
-        .map(|(i, (at, _))| Object {
-            name: format!("box{i}"),
-            geometry: Arc::new(vec![]),
-            mass: 0.1,
-            friction: 0.5,
-            world_from_object: standing(*at),
-        })
-        .collect();
     let table = ([0.7, 1.4, 0.05], [0.7, 0.0, TABLE - 0.025]);
     let parts = |size: [f64; 3]| Arc::new(ConvexParts::new(vec![box_part(Vector3::from(size))]));
-    let movable = objects.iter().map(|o| SceneBody {
-        name: o.name.clone(),
-        parts: parts(SIZE),
-        world_from_body: o.world_from_object,
-    });
-    let fixed = [&table].into_iter().chain(obstacles).enumerate().map(|(i, (size, at))| SceneBody {
-        name: if i == 0 { "table".into() } else { format!("wall{i}") },
-        parts: parts(*size),
-        world_from_body: Pose::translation(at[0], at[1], at[2]),
-    });
+    let mut world = World::new(kinematics.clone(), Pose::identity(), testbed::rest(&robot));
+    let mut body_parts = TypedVec::new();
+    let mut objects = Vec::new();
+    for (i, (at, _)) in moves.iter().enumerate() {
+        let (name, geometry, world_from_object) = (format!("box{i}"), Arc::new(vec![]), standing(*at));
+        world.add(&name, geometry.clone(), world_from_object);
+        body_parts.push(parts(SIZE));
+        objects.push(Object { name, geometry, mass: 0.1, friction: 0.5, world_from_object });
+    }
+    for (i, (size, at)) in [&table].into_iter().chain(obstacles).enumerate() {
+        let name = if i == 0 { "table".into() } else { format!("wall{i}") };
+        world.add(&name, Arc::new(vec![]), Pose::translation(at[0], at[1], at[2]));
+        body_parts.push(parts(*size));
+    }
     let links: Vec<LinkIdx> = robot.model.links().indices().collect();
     let self_pairs = links
         .iter()
@@ -96,13 +90,7 @@ fn bench(rail: bool, moves: &[([f64; 2], Goal)], obstacles: &[([f64; 3], [f64; 3
         .collect();
     let start = testbed::rest(&robot);
     Bench {
-        scene: Scene::new(
-            &kinematics,
-            Pose::identity(),
-            &link_parts(&robot),
-            self_pairs,
-            movable.chain(fixed).collect(),
-        ),
+        scene: Scene::new(&world, &link_parts(&robot), &body_parts, self_pairs),
         task: Task {
             name: "test".into(),
             robot,

@@ -11,24 +11,14 @@ use std::sync::Arc;
 
 use robotc_core::geom::{ConvexParts, contact, within};
 use robotc_core::ids::Idx;
-use robotc_core::{Kinematics, LinkIdx, LinkPoses, Pose, TypedVec};
+use robotc_core::world::World;
+use robotc_core::{BodyIdx, DofIdx, Kinematics, LinkIdx, LinkPoses, Pose, TypedVec};
 
 pub use checker::RobotChecker;
 use shape::Shape;
 
 use crate::edge::Obstruction;
 use crate::travel::TravelBounds;
-
-/// A body of a scene that is not a link of the robot.
-#[derive(Debug, Clone)]
-pub struct SceneBody {
-    /// For messages.
-    pub name: String,
-    /// Its convex parts, in its own frame.
-    pub parts: Arc<ConvexParts>,
-    /// Where it is.
-    pub world_from_body: Pose,
-}
 
 /// A robot and bodies around it. Cheap to clone: shapes are shared, poses are not.
 #[derive(Debug, Clone)]
@@ -37,7 +27,7 @@ pub struct Scene {
     world_from_robot: Pose,
     links: Arc<TypedVec<LinkIdx, Shape>>,
     self_pairs: Arc<Vec<(LinkIdx, LinkIdx)>>,
-    bodies: Vec<Body>,
+    bodies: TypedVec<BodyIdx, Body>,
 }
 
 #[derive(Debug, Clone)]
@@ -51,8 +41,8 @@ struct Body {
 /// A body that moves with a link.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grip {
-    /// Position of the body in the scene.
-    pub body: usize,
+    /// The body.
+    pub body: BodyIdx,
     /// The link that carries it.
     pub link: LinkIdx,
     /// The body in the frame of that link.
@@ -69,7 +59,7 @@ pub struct Rules {
     /// Links of the gripper, ascending.
     pub gripper: Vec<LinkIdx>,
     /// A body that the links of the gripper may touch: the target of a grasp.
-    pub target: Option<usize>,
+    pub target: Option<BodyIdx>,
     /// How deep the held body may be in other bodies, metres: it stands on one when it is picked up and put down.
     /// `None` asks for the margin.
     pub sink: Option<f64>,
@@ -89,29 +79,33 @@ impl From<Touch> for Obstruction {
 const ROOM: f64 = 0.03;
 
 impl Scene {
-    /// A robot at `world_from_robot` among `bodies`.
+    /// The robot and the bodies of a world, where they are now. Disabled bodies are left out; what the world holds
+    /// stands still here.
     ///
-    /// `links` holds the convex parts of each link (empty where it has none), `self_pairs` the pairs of links to
-    /// compare with each other.
+    /// `links` and `bodies` are the convex parts that cover each link and body, in their own frames (empty without
+    /// shape); `self_pairs` are the pairs of links to compare with each other.
     pub fn new(
-        kinematics: &Kinematics,
-        world_from_robot: Pose,
-        links: &TypedVec<LinkIdx, ConvexParts>,
+        world: &World,
+        links: &TypedVec<LinkIdx, Arc<ConvexParts>>,
+        bodies: &TypedVec<BodyIdx, Arc<ConvexParts>>,
         self_pairs: Vec<(LinkIdx, LinkIdx)>,
-        bodies: Vec<SceneBody>,
     ) -> Self {
-        let body = |b: SceneBody| Body {
-            name: b.name.into(),
-            shape: Arc::new(Shape::new(&b.parts)),
-            world_from_body: b.world_from_body,
-            body_from_world: b.world_from_body.inverse(),
+        let body = |(body, parts): (&robotc_core::world::Body, &Arc<ConvexParts>)| Body {
+            name: body.name.as_str().into(),
+            shape: Arc::new(if body.enabled {
+                Shape::new(parts)
+            } else {
+                Shape::new(&ConvexParts::default())
+            }),
+            world_from_body: body.world_from_body,
+            body_from_world: body.world_from_body.inverse(),
         };
         Self {
-            kinematics: kinematics.clone(),
-            world_from_robot,
-            links: Arc::new(links.iter().map(Shape::new).collect()),
+            kinematics: world.kinematics().clone(),
+            world_from_robot: *world.world_from_robot(),
+            links: Arc::new(links.iter().map(|parts| Shape::new(parts)).collect()),
             self_pairs: Arc::new(self_pairs),
-            bodies: bodies.into_iter().map(body).collect(),
+            bodies: world.bodies().iter().zip(bodies).map(body).collect(),
         }
     }
 
@@ -125,31 +119,26 @@ impl Scene {
         &self.world_from_robot
     }
 
-    /// Number of bodies besides the links.
-    pub fn body_count(&self) -> usize {
-        self.bodies.len()
-    }
-
     /// Where a body is.
-    pub fn world_from_body(&self, body: usize) -> &Pose {
+    pub fn world_from_body(&self, body: BodyIdx) -> &Pose {
         &self.bodies[body].world_from_body
     }
 
     /// Moves a body.
-    pub fn place(&mut self, body: usize, world_from_body: Pose) {
+    pub fn place(&mut self, body: BodyIdx, world_from_body: Pose) {
         self.bodies[body].world_from_body = world_from_body;
         self.bodies[body].body_from_world = world_from_body.inverse();
     }
 
     /// The same scene with one body elsewhere.
-    pub fn with_body_at(&self, body: usize, world_from_body: Pose) -> Self {
+    pub fn with_body_at(&self, body: BodyIdx, world_from_body: Pose) -> Self {
         let mut scene = self.clone();
         scene.place(body, world_from_body);
         scene
     }
 
     /// Bounds on the travel of all links, and of what is held, for motions of `dofs`.
-    pub fn travel_bounds(&self, dofs: &[robotc_core::DofIdx], held: Option<&Grip>) -> TravelBounds {
+    pub fn travel_bounds(&self, dofs: &[DofIdx], held: Option<&Grip>) -> TravelBounds {
         let mut bounds = TravelBounds::new(dofs);
         for (link, shape) in self.links.enumerate() {
             if !shape.is_empty() {
@@ -169,7 +158,7 @@ impl Scene {
         let Obstruction::Contact(code) = obstruction else { return None };
         let name = |n: usize| match n.checked_sub(self.links.len()) {
             None => Some(self.kinematics.model().links()[LinkIdx::new(n)].name.as_str()),
-            Some(body) => self.bodies.get(body).map(|b| &*b.name),
+            Some(body) => self.bodies.get(BodyIdx::new(body)).map(|b| &*b.name),
         };
         Some(format!("{} touches {}", name((code >> 16) as usize)?, name((code & 0xffff) as usize)?))
     }
@@ -189,7 +178,7 @@ impl Scene {
             let mover =
                 Mover { shape: &self.links[link], world_from_mover: world_from_link, number: link.index() };
             let of_gripper = rules.gripper.binary_search(&link).is_ok();
-            let ignored = |body: usize| {
+            let ignored = |body: BodyIdx| {
                 rules.held.as_ref().is_some_and(|grip| grip.body == body)
                     || (of_gripper && rules.target == Some(body))
             };
@@ -206,9 +195,10 @@ impl Scene {
     }
 
     /// Whether a body placed at `world_from_body` is deeper than `sink` metres in another one.
-    pub fn body_against_bodies(&self, body: usize, world_from_body: Pose, sink: f64) -> Result<(), Touch> {
+    pub fn body_against_bodies(&self, body: BodyIdx, world_from_body: Pose, sink: f64) -> Result<(), Touch> {
         let shape = &self.bodies[body].shape;
-        let mover = Mover { shape, world_from_mover: world_from_body, number: self.links.len() + body };
+        let mover =
+            Mover { shape, world_from_mover: world_from_body, number: self.links.len() + body.index() };
         self.mover_against_bodies(&mover, 0.0, Some(sink), |other| other == body).map(|_| ())
     }
 
@@ -239,7 +229,7 @@ impl Scene {
         Mover {
             shape: &self.bodies[grip.body].shape,
             world_from_mover: pose,
-            number: self.links.len() + grip.body,
+            number: self.links.len() + grip.body.index(),
         }
     }
 
@@ -248,7 +238,7 @@ impl Scene {
         mover: &Mover<'_>,
         margin: f64,
         sink: Option<f64>,
-        ignored: impl Fn(usize) -> bool,
+        ignored: impl Fn(BodyIdx) -> bool,
     ) -> Result<f64, Touch> {
         if mover.shape.is_empty() {
             return Ok(f64::INFINITY);
@@ -256,7 +246,10 @@ impl Scene {
         let margin = if sink.is_some() { 0.0 } else { margin };
         let centre = mover.world_from_mover * mover.shape.centre;
         let mut clearance = f64::INFINITY;
-        for (index, body) in self.bodies.iter().enumerate() {
+        for (index, body) in self.bodies.enumerate() {
+            if body.shape.is_empty() {
+                continue;
+            }
             let gap = body.shape.bounds.distance_to(&(body.body_from_world * centre)) - mover.shape.radius;
             if gap > margin + ROOM {
                 clearance = clearance.min(gap - margin);
@@ -285,7 +278,7 @@ impl Scene {
                             .is_some_and(|c| c.depth > sink),
                     };
                     if touches {
-                        return Err(Touch(mover.number as u16, (self.links.len() + index) as u16));
+                        return Err(Touch(mover.number as u16, (self.links.len() + index.index()) as u16));
                     }
                     clearance = 0.0;
                 }
