@@ -9,7 +9,7 @@ use crate::diag::{Diagnostic, Diagnostics, Severity, Sources};
 use crate::model::RobotModel;
 use crate::robot::{Base, Robot};
 use crate::system::System;
-use crate::urdf::{self, LoadOptions};
+use crate::urdf::{self, LoadOptions, MeshPolicy};
 use crate::{joint_limits, srdf};
 
 /// What a checked file holds, in a few lines for people.
@@ -55,7 +55,8 @@ pub fn check(
             (spec.as_ref().map(of_task), found)
         }
         FileKind::Description => {
-            let (model, found) = urdf::load(system, sources, path, &LoadOptions::default());
+            let alone = LoadOptions { meshes: MeshPolicy::SkipAway, ..LoadOptions::default() };
+            let (model, found) = urdf::load(system, sources, path, &alone);
             (model.as_ref().map(of_model), found)
         }
         FileKind::Semantics => {

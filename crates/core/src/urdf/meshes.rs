@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use super::draft::{Draft, GeometryDraft, ShapeDraft};
 use super::grouped::{Grouped, and_others};
 use super::lower::primitive;
-use super::resolve::{Resolved, resolve};
+use super::resolve::{Resolved, is_away, resolve};
 use super::{LoadOptions, MeshPolicy};
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::mesh;
@@ -89,7 +89,7 @@ impl<'a> MeshSource<'a> {
         let Some(Resolved { path, guessed }) =
             resolve(self.system, &self.options.packages, self.path, &uri.text)
         else {
-            if self.options.meshes == MeshPolicy::SkipMissing {
+            if self.is_skipped(&uri.text) {
                 self.left_out[purpose as usize].add(uri.span, &uri.text);
             } else {
                 found.push(self.missing(&uri.text, uri.span, link, purpose));
@@ -115,8 +115,18 @@ impl<'a> MeshSource<'a> {
         }
     }
 
+    /// Whether a damaged or missing mesh of this use keeps the robot from being used.
     fn is_fatal(&self, purpose: Use) -> bool {
-        purpose == Use::Collision && self.options.meshes == MeshPolicy::Load
+        purpose == Use::Collision && self.options.meshes != MeshPolicy::SkipMissing
+    }
+
+    /// Whether the policy leaves the missing mesh `uri` out.
+    fn is_skipped(&self, uri: &str) -> bool {
+        match self.options.meshes {
+            MeshPolicy::SkipMissing => true,
+            MeshPolicy::SkipAway => is_away(self.system, &self.options.packages, self.path, uri),
+            MeshPolicy::Load | MeshPolicy::Ignore => false,
+        }
     }
 
     fn load(&mut self, path: &Path, span: Span, found: &mut Diagnostics) -> Result<Arc<TriMesh>, String> {

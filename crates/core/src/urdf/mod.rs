@@ -32,6 +32,9 @@ pub enum MeshPolicy {
     /// A missing visual mesh is left out with a warning; a missing collision mesh is an error.
     #[default]
     Load,
+    /// As `Load`, but meshes that are somewhere else altogether are left out with a warning: those of a package whose folder
+    /// is not known, and those in a folder that does not exist. For a description looked at on its own.
+    SkipAway,
     /// A missing mesh of either kind is left out with a warning.
     SkipMissing,
     /// Mesh files are not looked at and no link has mesh shapes: enough for kinematics.

@@ -58,6 +58,24 @@ pub(crate) fn package_folder(
     })
 }
 
+/// Whether the folder that `uri` means does not exist here: the file is not missing, but somewhere else.
+pub(crate) fn is_away(
+    system: &dyn System,
+    packages: &BTreeMap<String, PathBuf>,
+    description: &Path,
+    uri: &str,
+) -> bool {
+    let reference = uri.strip_prefix("package://").or_else(|| uri.strip_prefix("model://"));
+    if let Some(reference) = reference.filter(|r| !r.starts_with('/')) {
+        let name = reference.split('/').next().unwrap_or_default();
+        return package_folder(system, packages, description, name).is_none();
+    }
+    let nearest = candidates(packages, description, uri).into_iter().next();
+    nearest
+        .and_then(|(path, _)| path.parent().map(Path::to_path_buf))
+        .is_some_and(|folder| !folder.as_os_str().is_empty() && !system.exists(&folder))
+}
+
 /// Places to look at, best first, and whether each is exactly what was asked for.
 fn candidates(packages: &BTreeMap<String, PathBuf>, description: &Path, uri: &str) -> Vec<(PathBuf, bool)> {
     let uri = uri.trim().replace('\\', "/");

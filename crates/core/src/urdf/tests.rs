@@ -271,16 +271,21 @@ fn mesh_references_of_all_kinds_are_found() {
 
 #[test]
 fn policies_for_missing_meshes() {
+    let away = "package://gone/m.stl";
     let table = [
-        (MeshPolicy::Load, "collision", false, "error[R0302]"),
-        (MeshPolicy::Load, "visual", true, "warning[R0301]"),
-        (MeshPolicy::SkipMissing, "collision", true, "warning[R0302]"),
-        (MeshPolicy::SkipMissing, "visual", true, "warning[R0301]"),
-        (MeshPolicy::Ignore, "collision", true, ""),
+        (MeshPolicy::Load, "collision", away, false, "error[R0302]"),
+        (MeshPolicy::Load, "visual", away, true, "warning[R0301]"),
+        (MeshPolicy::SkipAway, "collision", away, true, "warning[R0302]"),
+        (MeshPolicy::SkipAway, "collision", "meshes/m.stl", true, "warning[R0302]"),
+        (MeshPolicy::SkipAway, "collision", "m.stl", false, "error[R0302]"),
+        (MeshPolicy::SkipAway, "collision", "package://d/m.stl", false, "error[R0302]"),
+        (MeshPolicy::SkipMissing, "collision", "m.stl", true, "warning[R0302]"),
+        (MeshPolicy::SkipMissing, "visual", away, true, "warning[R0301]"),
+        (MeshPolicy::Ignore, "collision", away, true, ""),
     ];
-    for (meshes, kind, loads, finding) in table {
+    for (meshes, kind, uri, loads, finding) in table {
         let options = LoadOptions { meshes, ..LoadOptions::default() };
-        let (model, text) = read_with(&with_mesh(kind, "package://gone/m.stl"), &[], &options);
+        let (model, text) = read_with(&with_mesh(kind, uri), &[], &options);
         assert_eq!(model.is_some(), loads, "{meshes:?} {kind}: {text}");
         assert!(text.contains(finding) && text.is_empty() == finding.is_empty(), "{meshes:?} {kind}: {text}");
     }

@@ -23,7 +23,7 @@ fn every_robot_loads_with_its_meshes() {
     for path in files(&folder, "urdf") {
         // The mount of a camera is in another package of the Kinova robot.
         let is_incomplete = path.ends_with("gen3_2f85.urdf");
-        let policy = if is_incomplete { MeshPolicy::SkipMissing } else { MeshPolicy::Load };
+        let policy = if is_incomplete { MeshPolicy::SkipAway } else { MeshPolicy::Load };
         let (model, _, text) = load(&path, policy);
         let model = model.unwrap_or_else(|| panic!("{text}"));
         let links = model.links().iter();
