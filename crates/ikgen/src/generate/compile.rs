@@ -5,6 +5,7 @@ use robotc_core::ik::{IkSolutions, InverseKinematics as _};
 use robotc_core::model::{ChainMotion, SerialChain};
 
 use super::builder::Builder;
+use super::complete::completions;
 use super::facts::Facts;
 use super::problem::Problem;
 use super::strategies::{self, Strategy};
@@ -167,7 +168,11 @@ fn attempt(
         return Err(None);
     };
     let mut failure = None;
-    for Strategy { name, unknowns, write } in strategies::ALL {
+    let whole = problem.axes.len();
+    let problems = if whole < 6 { completions(&problem) } else { vec![problem] };
+    for (problem, Strategy { name, unknowns, write }) in
+        problems.iter().flat_map(|p| strategies::ALL.iter().map(move |s| (p, s)))
+    {
         if *unknowns != problem.axes.len() {
             continue;
         }
@@ -181,6 +186,7 @@ fn attempt(
             match write(&mut problem, &builder) {
                 Err(reason) => line += &reason,
                 Ok(how) => {
+                    let how = if whole < 6 { format!("{how}, completed to 6R") } else { how };
                     let class = describe(letters, name, reversed, &how, free, chain);
                     let mut program = builder.finish();
                     // Below this the difference is rounding of the description, which the check covers.

@@ -2,6 +2,7 @@
 
 pub mod builder;
 pub mod compile;
+mod complete;
 pub mod facts;
 pub(crate) mod lock;
 pub mod problem;

@@ -6,6 +6,9 @@ use robotc_core::Pose;
 use super::builder::{Builder, Move, Scalar, Turn, Vector};
 use super::facts::{Axis, Facts, tidy};
 
+/// An added joint is taken to be at zero when its cosine is this close to one; the check of solutions is exact.
+const OFF_ZERO: f64 = 1e-3;
+
 /// `e_1 e_2 ... e_n = G`: unknown motions about axes given at zero, and the motion that takes the tip from its pose at zero
 /// to the wanted one.
 ///
@@ -45,6 +48,15 @@ impl Problem {
         Some(Self { axes, given, outer, reversed: false, facts: facts.clone(), free: free.to_vec() })
     }
 
+    /// The same problem with joints added at the tip that must stay at zero.
+    pub fn with_added(&self, added: &[Axis]) -> Self {
+        let mut longer = self.clone();
+        let variables = self.facts.ideal.len();
+        let added = added.iter().enumerate().map(|(i, axis)| Axis { variable: variables + i, ..*axis });
+        longer.axes.extend(added);
+        longer
+    }
+
     /// The same equation inverted: tip to base.
     pub fn reversed(&self) -> Self {
         let mut turned = self.clone();
@@ -70,8 +82,8 @@ impl Problem {
         let sign = if self.reversed { -1.0 } else { 1.0 };
         let mut ideal = self.facts.ideal.clone();
         for axis in self.axes.iter().chain(self.given.as_ref().map(|(_, a)| a)) {
-            let same =
-                ideal.iter_mut().find(|a| a.variable == axis.variable).expect("axes come from the facts");
+            // Added joints are not part of the description.
+            let Some(same) = ideal.iter_mut().find(|a| a.variable == axis.variable) else { continue };
             *same = Axis { direction: axis.direction * sign, ..*axis };
         }
         super::facts::snap_between(&self.facts.described, &ideal)
@@ -103,11 +115,16 @@ impl Problem {
         }
     }
 
-    /// Emits a solution: the motion of each unknown axis, in the order of this problem.
+    /// Emits a solution: the motion of each unknown axis, in the order of this problem. Added joints must be at zero.
     pub fn emit(&self, b: &Builder, moves: &[Move<'_>]) {
         let mut all: Vec<Option<Move<'_>>> = vec![None; self.facts.ideal.len()];
+        let mut off_zero = b.constant(0.0);
         for (axis, step) in self.axes.iter().zip(moves) {
-            all[axis.variable] = Some(*step);
+            match (all.get_mut(axis.variable), step) {
+                (Some(slot), _) => *slot = Some(*step),
+                (None, Move::Turn(t)) => off_zero = off_zero + (b.constant(1.0) - t.cos),
+                (None, Move::Slide(x)) => off_zero = off_zero + *x * *x,
+            }
         }
         let given = self.given.as_ref().map(|(_, a)| a);
         for axis in self.outer.0.iter().chain(&self.outer.1).chain(given) {
@@ -115,7 +132,11 @@ impl Problem {
         }
         let all: Vec<Move<'_>> =
             all.into_iter().map(|m| m.expect("every variable is unknown or given")).collect();
-        b.emit(&all);
+        if off_zero.as_constant().is_some() {
+            b.emit(&all);
+        } else {
+            b.if_zero(off_zero, OFF_ZERO, || b.emit(&all), || {});
+        }
     }
 
     /// Number of the joint of an unknown axis, from 1 at the base: names of its cosine and sine.

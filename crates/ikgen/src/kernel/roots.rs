@@ -55,6 +55,9 @@ impl Roots {
 /// The angle whose cosine and sine are proportional to `x` and `y`.
 pub fn align(x: f64, y: f64, slack: f64) -> Roots {
     let n = sqrt(x * x + y * y);
+    if !(x.abs() + y.abs() < f64::INFINITY) {
+        return Roots::NONE;
+    }
     if n < VANISHING {
         return Roots::ANY_ANGLE;
     }
@@ -67,6 +70,9 @@ pub fn align(x: f64, y: f64, slack: f64) -> Roots {
 /// The two angles whose cosine is proportional to `x` and sine to plus or minus `y`.
 pub fn mirror(x: f64, y: f64, slack: f64) -> Roots {
     let n = sqrt(x * x + y * y);
+    if !(x.abs() + y.abs() < f64::INFINITY) {
+        return Roots::NONE;
+    }
     if n < VANISHING {
         return Roots::ANY_ANGLE;
     }
@@ -92,6 +98,9 @@ fn apart(sine: f64, slack: f64) -> f64 {
 /// edge of what the arm can do, and the check of solutions decides.
 pub fn circle(a: f64, b: f64, d: f64, slack: f64) -> Roots {
     let n = sqrt(a * a + b * b);
+    if !(a.abs() + b.abs() < f64::INFINITY) {
+        return Roots::NONE;
+    }
     if n < VANISHING {
         return if d.abs() <= EDGE + slack { Roots::ANY_ANGLE } else { Roots::NONE };
     }

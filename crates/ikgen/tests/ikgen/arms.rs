@@ -167,7 +167,31 @@ pub fn fetch() -> SerialChain {
     )
 }
 
+/// Five joints: pan, three parallel axes, roll (Katana).
+pub fn katana() -> SerialChain {
+    chain(
+        "katana",
+        &[
+            (Z, [0.0, 0.0, 0.1]),
+            (Y, [0.0, 0.0, 0.2]),
+            (Y, [0.19, 0.0, 0.2]),
+            (Y, [0.329, 0.0, 0.2]),
+            (X, [0.4, 0.0, 0.2]),
+        ],
+        [0.5, 0.0, 0.2],
+    )
+}
+
+/// Four joints: spherical shoulder and elbow (Barrett WAM without its wrist).
+pub fn wam4() -> SerialChain {
+    chain(
+        "wam4",
+        &[(Z, [0.0, 0.0, 0.3]), (Y, [0.0, 0.0, 0.3]), (Z, [0.0, 0.0, 0.3]), (Y, [0.045, 0.0, 0.85])],
+        [0.0, 0.0, 1.15],
+    )
+}
+
 /// All of them.
 pub fn all() -> Vec<SerialChain> {
-    vec![kr6(), skew(), ur5(), ru5(), shoulder(), panda(), iiwa(), fetch()]
+    vec![kr6(), skew(), ur5(), ru5(), shoulder(), panda(), iiwa(), fetch(), katana(), wam4()]
 }

@@ -3,8 +3,10 @@
 //! `e1 e2 e3 start = goal`. With `v(q3)` the place of the point as seen from axis 2, and `p12` the step from axis 1 to axis 2,
 //! the turn about axis 2 must satisfy two equations that are linear in the cosine and sine of `q3`:
 //!
-//!     p12 . R2 v = (|goal|^2 - |p12|^2 - |v|^2) / 2
-//!     h1  . R2 v = h1 . (goal - p12)
+//! ```text
+//! p12 . R2 v = (|goal|^2 - |p12|^2 - |v|^2) / 2
+//! h1  . R2 v = h1 . (goal - p12)
+//! ```
 //!
 //! (Pieper, 1968, in the notation of products of exponentials.) Where axes 1 and 2 are parallel or meet, one of the two
 //! does not contain `q2` and gives `q3` alone; otherwise both together give `R2 v`, and its length is a conic in the

@@ -7,7 +7,7 @@
 #![allow(dead_code, unused_imports, unused_variables, clippy::all)]
 
 pub use kernel::chain::{Frame, Link};
-use kernel::candidate::Arm;
+use kernel::candidate::{Arm, WIDER};
 use kernel::math::{cos_sin, sqrt};
 use kernel::roots::*;
 
@@ -204,10 +204,20 @@ fn max(a: f64, b: f64) -> f64 {
 /// As [`solve`], for a chain whose constants are near those of the described one.
 pub fn solve_on(chain: &Chain, base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {
     out.len = 0;
+    let mut sink = Sink { arm: arm(chain), base_from_tip, free, out, accepted: 0 };
+    attempt(base_from_tip, free, SLACK, &mut sink);
+    for slack in WIDER {
+        if sink.accepted == 0 && slack > SLACK {
+            attempt(base_from_tip, free, slack, &mut sink);
+        }
+    }
+}
+
+/// Offers candidates; the equations may miss their roots by `slack`.
+fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &mut Sink<'_>) {
     let [[r00, r01, r02], [r10, r11, r12], [r20, r21, r22]] = base_from_tip.rotation;
     let [px, py, pz] = base_from_tip.position;
     let [] = *free;
-    let mut sink = Sink { arm: arm(chain), base_from_tip, free, out, accepted: 0 };
     // the place of the wrist centre
     // axes parallel: the height along them does not depend on the turn of the second
     let t0 = py + r12 * -0.07999999999999996;
@@ -219,7 +229,7 @@ pub fn solve_on(chain: &Chain, base_from_tip: &Frame, free: &[f64; FREE.len()], 
     let t6 = -0.014699999999999963 + -0.5 * (0.0006250000000000001 + (t1 * t1 + t0 * t0 + t4 * t4));
     let t7 = t1 * 0.025;
     let t8 = t0 * 0.025;
-    let roots1 = circle(-t0, -t1, 0.0, SLACK);
+    let roots1 = circle(-t0, -t1, 0.0, slack);
     let before1 = sink.accepted;
     for i in 0..roots1.count() {
         if roots1.free && sink.accepted > before1 {
@@ -238,7 +248,7 @@ pub fn solve_on(chain: &Chain, base_from_tip: &Frame, free: &[f64; FREE.len()], 
         let t20 = c1 * r01;
         let t21 = t19 - t20;
         let t22 = t20 - t19;
-        let roots2 = circle(-0.45499999999999996 * t11, t5, t6 + c1 * t7 - s1 * t8, SLACK);
+        let roots2 = circle(-0.45499999999999996 * t11, t5, t6 + c1 * t7 - s1 * t8, slack);
         let before2 = sink.accepted;
         for i in 0..roots2.count() {
             if roots2.free && sink.accepted > before2 {
@@ -254,7 +264,7 @@ pub fn solve_on(chain: &Chain, base_from_tip: &Frame, free: &[f64; FREE.len()], 
             let t31 = c2 * t22;
             let t32 = t30 - t31;
             let t33 = t31 - t30;
-            let roots3 = align(0.42000000000000004 * t25 + 0.034999999999999976 * t26, t25 * 0.034999999999999976 - 0.42000000000000004 * t26, SLACK);
+            let roots3 = align(0.42000000000000004 * t25 + 0.034999999999999976 * t26, t25 * 0.034999999999999976 - 0.42000000000000004 * t26, slack);
             let before3 = sink.accepted;
             for i in 0..roots3.count() {
                 if roots3.free && sink.accepted > before3 {
@@ -266,7 +276,7 @@ pub fn solve_on(chain: &Chain, base_from_tip: &Frame, free: &[f64; FREE.len()], 
                 let t36 = s3 * t27 - c3 * t28;
                 let t37 = c3 * t29 - s3 * t32;
                 let t38 = s3 * t29 - c3 * t33;
-                let roots4 = mirror(-(t27 * c3 + s3 * t28), sqrt(t36 * t36 + t17), SLACK);
+                let roots4 = mirror(-(t27 * c3 + s3 * t28), sqrt(t36 * t36 + t17), slack);
                 let before4 = sink.accepted;
                 for i in 0..roots4.count() {
                     if roots4.free && sink.accepted > before4 {
@@ -274,14 +284,14 @@ pub fn solve_on(chain: &Chain, base_from_tip: &Frame, free: &[f64; FREE.len()], 
                     }
                     let [c5, s5] = roots4.get(i);
                     let t41 = s5 * t38;
-                    let roots5 = align(t36 * s5, -(t16 * s5), SLACK);
+                    let roots5 = align(t36 * s5, -(t16 * s5), slack);
                     let before5 = sink.accepted;
                     for i in 0..roots5.count() {
                         if roots5.free && sink.accepted > before5 {
                             break;
                         }
                         let [c4, s4] = roots5.get(i);
-                        let roots6 = align(c4 * t18 - s4 * t37, t41 - c5 * (c4 * t37 + t18 * s4), SLACK);
+                        let roots6 = align(c4 * t18 - s4 * t37, t41 - c5 * (c4 * t37 + t18 * s4), slack);
                         let before6 = sink.accepted;
                         for i in 0..roots6.count() {
                             if roots6.free && sink.accepted > before6 {
@@ -456,6 +466,9 @@ mod kernel {
         /// The angle whose cosine and sine are proportional to `x` and `y`.
         pub fn align(x: f64, y: f64, slack: f64) -> Roots {
             let n = sqrt(x * x + y * y);
+            if !(x.abs() + y.abs() < f64::INFINITY) {
+                return Roots::NONE;
+            }
             if n < VANISHING {
                 return Roots::ANY_ANGLE;
             }
@@ -468,6 +481,9 @@ mod kernel {
         /// The two angles whose cosine is proportional to `x` and sine to plus or minus `y`.
         pub fn mirror(x: f64, y: f64, slack: f64) -> Roots {
             let n = sqrt(x * x + y * y);
+            if !(x.abs() + y.abs() < f64::INFINITY) {
+                return Roots::NONE;
+            }
             if n < VANISHING {
                 return Roots::ANY_ANGLE;
             }
@@ -493,6 +509,9 @@ mod kernel {
         /// edge of what the arm can do, and the check of solutions decides.
         pub fn circle(a: f64, b: f64, d: f64, slack: f64) -> Roots {
             let n = sqrt(a * a + b * b);
+            if !(a.abs() + b.abs() < f64::INFINITY) {
+                return Roots::NONE;
+            }
             if n < VANISHING {
                 return if d.abs() <= EDGE + slack { Roots::ANY_ANGLE } else { Roots::NONE };
             }
@@ -790,7 +809,7 @@ mod kernel {
             let mut at = [0.0; MAX_JOINTS];
             at[..n].copy_from_slice(values);
             let mut best = f64::INFINITY;
-            for _ in 0..30 {
+            for _ in 0..50 {
                 let (distance, error, columns) = linearise(links, last_from_tip, base_from_tip, &at[..n]);
                 if distance < best {
                     let converged = distance < EXACT && distance > 0.1 * best;
@@ -915,6 +934,10 @@ mod kernel {
 
         /// Solutions closer than this in every variable (radians modulo a turn, metres) are the same one.
         pub const SAME: f64 = 1e-7;
+
+        /// Slacks of the further attempts at a pose that gave no solution: at poses where several axes line up at once, rounding
+        /// alone can hide the roots of an equation.
+        pub const WIDER: [f64; 2] = [1e-5, 2e-3];
 
         /// The chain that solutions must satisfy.
         #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,59 @@
+ikgen 1
+class "4R spherical shoulder, axes 1 and 2 meeting, completed to 6R (from the tip)"
+variables 4
+free []
+snap 0.0
+slack 0.0
+{
+  # the place of the wrist centre
+  # axes meet: the distance from their common point does not depend on the turn of the second
+  let t0 = r22 * 0.3 - (r02 * px + r12 * py + r22 * pz) - 0.355
+  let t1 = 0.3 * r21 - (px * r01 + py * r11 + pz * r21) - 0.23
+  let t2 = 1.15 + (px * r00 + py * r10 + pz * r20 - 0.3 * r20) - 0.68
+  circle(-0.15909999999999994, -0.3563, t0 * t0 + t1 * t1 + t2 * t2 - 0.48242500000000005) -> c4 s4 {
+    let t5 = 0.16999999999999993 + -0.55 * c4 + -0.045 * s4
+    let t6 = -0.31 + c4 * -0.045 + s4 * 0.55
+    let t7 = t0 * t6
+    let t8 = t1 * t6
+    circle(t5, 0.23, t2) -> c5 s5 {
+      let t11 = -0.23 * c5 + t5 * s5
+      let t12 = r20 * c5
+      let t13 = r20 * s5
+      let t14 = r00 * c5
+      let t15 = r00 * s5
+      let t16 = 1.0 - c5
+      align(t1 * t11 + t7, t8 - t0 * t11) -> c6 s6 {
+        # what is left of the rotation for the wrist
+        # the angle between the first and the last axis of the wrist
+        let t19 = r21 * c6
+        let t20 = r22 * s6
+        let t21 = s5 * (t19 - t20)
+        let t22 = r22 * c6 + r21 * s6
+        let t23 = c5 * (t20 - t19) - t13
+        let t24 = c4 * t22 + s4 * (t21 - t12)
+        let t25 = r02 * c6 + r01 * s6
+        let t26 = c4 * t25
+        let t27 = r02 * s6
+        let t28 = r01 * c6
+        let t29 = s5 * (t27 - t28) + t14
+        let t30 = s4 * t29
+        let t31 = c5 * (t28 - t27) + t15
+        let t32 = t26 - t30
+        let t33 = c4 * t29 + s4 * t25
+        let t34 = t30 - t26
+        let t35 = 1.0 - c6 + t16
+        mirror(-(c4 * (t12 - t21) + s4 * t22), sqrt(t23 * t23 + t24 * t24)) -> c2 s2 {
+          let t38 = s2 * t33
+          align(-(t24 * s2), -(t23 * s2)) -> c3 s3 {
+            align(c2 * (c3 * t32 - s3 * t31) - t38, s3 * t34 - c3 * t31) -> c1 s1 {
+              zero(t35, 0.001) {
+                emit angle(c1, s1) angle(c2, s2) angle(c3, s3) angle(c4, s4)
+              } else {
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+}
