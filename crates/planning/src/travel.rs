@@ -22,8 +22,18 @@ impl TravelBounds {
         Self { dofs: dofs.to_vec(), rows: Vec::new() }
     }
 
-    /// Adds a body fixed to `link` whose points are within `radius` metres of the link frame's origin.
-    pub fn add(&mut self, kinematics: &Kinematics, link: LinkIdx, radius: f64) {
+    /// Adds a body fixed to `link` whose points are within `radius` metres of the link frame's origin; returns its row:
+    /// how far each degree of freedom moves it at most.
+    pub fn add(&mut self, kinematics: &Kinematics, link: LinkIdx, radius: f64) -> Vec<f64> {
+        let row = self.row(kinematics, link, radius);
+        let dominated = |by: &Vec<f64>| row.iter().zip(by).all(|(a, b)| a <= b);
+        if !self.rows.iter().any(dominated) {
+            self.rows.push(row.clone());
+        }
+        row
+    }
+
+    fn row(&self, kinematics: &Kinematics, link: LinkIdx, radius: f64) -> Vec<f64> {
         let model = kinematics.model();
         let mut row = vec![0.0; self.dofs.len()];
         // Distance from the origin of the link reached so far to any point of the body.
@@ -59,10 +69,16 @@ impl TravelBounds {
             reach += (joint.parent_from_joint() * moved).translation.vector.norm();
             at = joint.parent;
         }
-        let dominated = |by: &Vec<f64>| row.iter().zip(by).all(|(a, b)| a <= b);
-        if !self.rows.iter().any(dominated) {
-            self.rows.push(row);
-        }
+        row
+    }
+
+    /// The part of [`travel`](Self::travel) that a body with this row travels at most, whatever the motion.
+    pub fn pace(&self, row: &[f64]) -> f64 {
+        let against = |all: &Vec<f64>| {
+            let ratio = |(&own, &all): (&f64, &f64)| if own == 0.0 { 0.0 } else { own / all };
+            row.iter().zip(all).map(ratio).fold(0.0, f64::max)
+        };
+        self.rows.iter().map(against).fold(f64::INFINITY, f64::min)
     }
 
     /// The most that any point of any body travels in the straight motion by `difference`, metres.
@@ -92,6 +108,7 @@ mod tests {
         let link = robot.model.link_named("left").unwrap();
         let mut bounds = TravelBounds::new(dofs);
         bounds.add(&kinematics, link, 0.2);
+        let fore_row = bounds.add(&kinematics, robot.model.link_named("fore").unwrap(), 0.3);
         let mut rng = Seed::new(4).rng();
         let mut tightest = 0.0_f64;
         for _ in 0..300 {
@@ -115,7 +132,15 @@ mod tests {
             let bound = bounds.travel(&step);
             assert!(moved <= bound + 1e-12, "{moved} {bound}");
             tightest = tightest.max(moved / bound);
+            // A body nearer to the base travels no more than its pace.
+            let moved_fore: f64 = fore_row.iter().zip(&step).map(|(r, d)| r * d.abs()).sum();
+            assert!(moved_fore <= bounds.pace(&fore_row) * bound + 1e-12);
         }
+        // The rail moves both alike, so the pace is the whole; without the rail it is less.
+        assert_eq!(bounds.pace(&fore_row), 1.0);
+        let turning = |row: &[f64]| row[1..].to_vec();
+        let without_rail = TravelBounds { dofs: dofs[1..].to_vec(), rows: vec![turning(&bounds.rows[0])] };
+        assert!(without_rail.pace(&turning(&fore_row)) < 0.9);
         assert!(tightest > 0.5, "the bound is not absurdly loose: {tightest}");
     }
 }

@@ -132,7 +132,7 @@ fn rules(
     }
 }
 
-/// Looks at the motion in steps of the resolution; states are skipped only where the clearance covers them.
+/// Looks at the motion in steps of the resolution, at every one.
 fn replay(
     problem: &Manipulation<'_>,
     scene: &Scene,
@@ -150,9 +150,8 @@ fn replay(
     };
     let space = Space::new(trajectory.dofs().iter().map(axis).collect());
     let Goal::Place { keep_upright, .. } = problem.task.goals[segment.goal];
-    let mut checker = RobotChecker::new(scene, &space, trajectory.dofs(), q, rules, resolution);
-    let mut last: Option<Vec<f64>> = None;
-    let mut room = 0.0;
+    let mut checker =
+        RobotChecker::new(scene, &space, trajectory.dofs(), q, rules, resolution).without_clearance();
     for (time, at) in dense_states(&checker, trajectory, resolution) {
         if let (Some(tilt), Some(held), SegmentKind::Carry) = (keep_upright, &segment.held, segment.kind) {
             let mut full = q.clone();
@@ -164,11 +163,7 @@ fn replay(
                 return Err((time, "the held object tilts too far".into()));
             }
         }
-        let travelled = last.as_ref().map_or(f64::INFINITY, |l| checker.travel(&space.difference(l, &at)));
-        if travelled > room {
-            room = checker.state(&at).map_err(|by| (time, checker.describe(by)))?;
-            last = Some(at);
-        }
+        checker.state(&at).map_err(|by| (time, checker.describe(by)))?;
     }
     Ok(checker.states())
 }

@@ -13,7 +13,7 @@ use crate::budget::{Budget, Interrupt};
 use crate::constraint::Upright;
 use crate::goal::{GoalDraw, GoalSampler};
 use crate::grasp::{Grasp, GraspSet};
-use crate::scene::{Rules, Scene};
+use crate::scene::{Movers, Rules, Scene};
 
 /// A grasp with all its straight motions.
 #[derive(Debug, Clone, PartialEq)]
@@ -281,6 +281,6 @@ fn hand_at(
     // Carry the whole robot along, so that its palm is where the tool wants it; only the gripper is looked at.
     let world_from_palm = world_from_tool * gripper.palm_from_tool.inverse();
     let world_from_root = world_from_palm * poses.root_from(gripper.palm).inverse();
-    let free = scene.against_bodies(&world_from_root, &poses, cx.gripper_links, rules);
+    let free = scene.against_bodies(&world_from_root, &poses, &Movers::of(cx.gripper_links), rules, 0.0);
     free.map(|_| ()).map_err(|touch| scene.describe(touch.into()).unwrap_or_default())
 }

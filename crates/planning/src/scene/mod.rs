@@ -1,24 +1,24 @@
 //! The robot among bodies: what touches what, and how much room is left.
 //!
 //! Every moving body (a link, or the object in the gripper) is first compared by its bounding sphere with the box of
-//! every other one; parts are looked at where these bounds do not settle it. The bounds that settle it add up to the
-//! clearance of the state, with which [edge checks](crate::edge) skip what cannot collide.
+//! every other one; parts are looked at where these bounds do not settle it. What is found is the clearance of the
+//! state, with which [edge checks](crate::edge) skip what cannot collide. It is counted in the travel of the fastest
+//! point: a link that moves at a third of that pace has three times the room.
 
 mod checker;
 mod shape;
 
 use std::sync::Arc;
 
-use robotc_core::geom::{ConvexParts, contact, within};
+use robotc_core::geom::{ConvexParts, contact, distance, within};
 use robotc_core::ids::Idx;
 use robotc_core::world::World;
-use robotc_core::{BodyIdx, DofIdx, Kinematics, LinkIdx, LinkPoses, Pose, TypedVec};
+use robotc_core::{BodyIdx, Kinematics, LinkIdx, LinkPoses, Pose, TypedVec};
 
 pub use checker::RobotChecker;
 use shape::Shape;
 
 use crate::edge::Obstruction;
-use crate::travel::TravelBounds;
 
 /// A robot and bodies around it. Cheap to clone: shapes are shared, poses are not.
 #[derive(Debug, Clone)]
@@ -74,9 +74,6 @@ impl From<Touch> for Obstruction {
         Obstruction::Contact(u32::from(touch.0) << 16 | u32::from(touch.1))
     }
 }
-
-/// Space that makes it worth looking no closer, metres: clearances are found up to about this.
-const ROOM: f64 = 0.03;
 
 impl Scene {
     /// The robot and the bodies of a world, where they are now. Disabled bodies are left out; what the world holds
@@ -137,22 +134,6 @@ impl Scene {
         scene
     }
 
-    /// Bounds on the travel of all links, and of what is held, for motions of `dofs`.
-    pub fn travel_bounds(&self, dofs: &[DofIdx], held: Option<&Grip>) -> TravelBounds {
-        let mut bounds = TravelBounds::new(dofs);
-        for (link, shape) in self.links.enumerate() {
-            if !shape.is_empty() {
-                bounds.add(&self.kinematics, link, shape.radius_about_origin());
-            }
-        }
-        if let Some(grip) = held {
-            let shape = &self.bodies[grip.body].shape;
-            let radius = shape.radius_about_origin() + grip.link_from_body.translation.vector.norm();
-            bounds.add(&self.kinematics, grip.link, radius);
-        }
-        bounds
-    }
-
     /// A clause that names a touching pair.
     pub fn describe(&self, obstruction: Obstruction) -> Option<String> {
         let Obstruction::Contact(code) = obstruction else { return None };
@@ -163,33 +144,35 @@ impl Scene {
         Some(format!("{} touches {}", name((code >> 16) as usize)?, name((code & 0xffff) as usize)?))
     }
 
-    /// Whether `links` and the held body of a robot at `world_from_robot`, its links at `poses`, collide with other
-    /// bodies; if not, their clearance: how far all of them may travel without a collision.
-    pub fn against_bodies(
+    /// Whether `movers` of a robot at `world_from_robot`, its links at `poses`, collide with other bodies; if not, their
+    /// clearance, cut at `room`: how far they may travel, each at its pace, without a collision.
+    pub(crate) fn against_bodies(
         &self,
         world_from_robot: &Pose,
         poses: &LinkPoses,
-        links: &[LinkIdx],
+        movers: &Movers,
         rules: &Rules,
+        room: f64,
     ) -> Result<f64, Touch> {
-        let mut clearance = f64::INFINITY;
-        for &link in links {
-            let world_from_link = world_from_robot * poses.root_from(link);
-            let mover =
-                Mover { shape: &self.links[link], world_from_mover: world_from_link, number: link.index() };
+        let mut clearance = room;
+        for &(link, pace) in &movers.links {
+            let placed = Placed {
+                shape: &self.links[link],
+                pose: world_from_robot * poses.root_from(link),
+                number: link.index(),
+            };
             let of_gripper = rules.gripper.binary_search(&link).is_ok();
             let ignored = |body: BodyIdx| {
                 rules.held.as_ref().is_some_and(|grip| grip.body == body)
                     || (of_gripper && rules.target == Some(body))
             };
-            clearance = clearance.min(self.mover_against_bodies(&mover, rules.margin, None, ignored)?);
+            self.one_against_bodies(&placed, rules.margin, None, ignored, pace, &mut clearance)?;
         }
         if let Some(grip) = &rules.held {
             let world_from_link = world_from_robot * poses.root_from(grip.link);
-            let mover = self.held_mover(grip, world_from_link * grip.link_from_body);
-            let free =
-                self.mover_against_bodies(&mover, rules.margin, rules.sink, |body| body == grip.body)?;
-            clearance = clearance.min(free);
+            let held = self.held(grip, world_from_link * grip.link_from_body);
+            let ignored = |body: BodyIdx| body == grip.body;
+            self.one_against_bodies(&held, rules.margin, rules.sink, ignored, movers.held, &mut clearance)?;
         }
         Ok(clearance)
     }
@@ -197,130 +180,138 @@ impl Scene {
     /// Whether a body placed at `world_from_body` is deeper than `sink` metres in another one.
     pub fn body_against_bodies(&self, body: BodyIdx, world_from_body: Pose, sink: f64) -> Result<(), Touch> {
         let shape = &self.bodies[body].shape;
-        let mover =
-            Mover { shape, world_from_mover: world_from_body, number: self.links.len() + body.index() };
-        self.mover_against_bodies(&mover, 0.0, Some(sink), |other| other == body).map(|_| ())
+        let placed = Placed { shape, pose: world_from_body, number: self.links.len() + body.index() };
+        self.one_against_bodies(&placed, 0.0, Some(sink), |other| other == body, 1.0, &mut 0.0)
     }
 
-    /// Whether links touch each other or the held body; if not, the clearance (half of the room between them, since
-    /// both may move).
-    pub fn against_self(&self, poses: &LinkPoses, rules: &Rules) -> Result<f64, Touch> {
-        let mut clearance = f64::INFINITY;
-        let mover = |link: LinkIdx| Mover {
+    /// Whether links touch each other or the held body; if not, the clearance, cut at `room`.
+    pub(crate) fn against_self(
+        &self,
+        poses: &LinkPoses,
+        movers: &Movers,
+        rules: &Rules,
+        room: f64,
+    ) -> Result<f64, Touch> {
+        let mut clearance = room;
+        let placed = |link: LinkIdx| Placed {
             shape: &self.links[link],
-            world_from_mover: *poses.root_from(link),
+            pose: *poses.root_from(link),
             number: link.index(),
         };
-        for &(a, b) in self.self_pairs.iter() {
-            clearance = clearance.min(0.5 * pair_clearance(&mover(a), &mover(b))?);
+        for &(a, b, pace) in &movers.pairs {
+            compare(&placed(a), &placed(b), pace, &mut clearance)?;
         }
         if let Some(grip) = &rules.held {
-            let held = self.held_mover(grip, poses.root_from(grip.link) * grip.link_from_body);
-            for (link, shape) in self.links.enumerate() {
-                if !shape.is_empty() && rules.gripper.binary_search(&link).is_err() {
-                    clearance = clearance.min(0.5 * pair_clearance(&mover(link), &held)?);
-                }
+            let held = self.held(grip, poses.root_from(grip.link) * grip.link_from_body);
+            for &(link, pace) in &movers.beside_held {
+                compare(&placed(link), &held, pace, &mut clearance)?;
             }
         }
         Ok(clearance)
     }
 
-    fn held_mover(&self, grip: &Grip, pose: Pose) -> Mover<'_> {
-        Mover {
-            shape: &self.bodies[grip.body].shape,
-            world_from_mover: pose,
-            number: self.links.len() + grip.body.index(),
-        }
+    fn held(&self, grip: &Grip, pose: Pose) -> Placed<'_> {
+        let number = self.links.len() + grip.body.index();
+        Placed { shape: &self.bodies[grip.body].shape, pose, number }
     }
 
-    fn mover_against_bodies(
+    /// Lowers `clearance` to that of one mover, or finds what it touches.
+    fn one_against_bodies(
         &self,
-        mover: &Mover<'_>,
+        mover: &Placed<'_>,
         margin: f64,
         sink: Option<f64>,
         ignored: impl Fn(BodyIdx) -> bool,
-    ) -> Result<f64, Touch> {
-        if mover.shape.is_empty() {
-            return Ok(f64::INFINITY);
-        }
+        pace: f64,
+        clearance: &mut f64,
+    ) -> Result<(), Touch> {
         let margin = if sink.is_some() { 0.0 } else { margin };
-        let centre = mover.world_from_mover * mover.shape.centre;
-        let mut clearance = f64::INFINITY;
+        let centre = mover.pose * mover.shape.centre;
         for (index, body) in self.bodies.enumerate() {
-            if body.shape.is_empty() {
-                continue;
-            }
+            let touch = || Touch(mover.number as u16, (self.links.len() + index.index()) as u16);
             let gap = body.shape.bounds.distance_to(&(body.body_from_world * centre)) - mover.shape.radius;
-            if gap > margin + ROOM {
-                clearance = clearance.min(gap - margin);
+            if gap > margin + *clearance * pace || body.shape.is_empty() || ignored(index) {
                 continue;
             }
-            if ignored(index) {
-                continue;
-            }
-            let body_from_mover = body.body_from_world * mover.world_from_mover;
+            let body_from_mover = body.body_from_world * mover.pose;
             for part in &mover.shape.parts {
                 let part_centre = body_from_mover * part.centre;
                 for other in &body.shape.parts {
-                    let gap = other.bounds.distance_to(&part_centre) - part.radius;
-                    if gap > margin + ROOM {
-                        clearance = clearance.min(gap - margin);
+                    let far = margin + *clearance * pace;
+                    if other.bounds.distance_to(&part_centre) - part.radius > far
+                        || !within(&part.part, &body_from_mover, &other.part, &Pose::identity(), far)
+                    {
                         continue;
                     }
-                    let poses = (&body_from_mover, &Pose::identity());
-                    if !within(&part.part, poses.0, &other.part, poses.1, margin + ROOM) {
-                        clearance = clearance.min(ROOM);
-                        continue;
-                    }
+                    let gap = distance(&part.part, &body_from_mover, &other.part, &Pose::identity()).distance;
                     let touches = match sink {
-                        None => within(&part.part, poses.0, &other.part, poses.1, margin),
-                        Some(sink) => contact(&part.part, poses.0, &other.part, poses.1, 0.0)
-                            .is_some_and(|c| c.depth > sink),
+                        None => gap <= margin,
+                        Some(sink) => {
+                            gap == 0.0
+                                && contact(&part.part, &body_from_mover, &other.part, &Pose::identity(), 0.0)
+                                    .is_some_and(|c| c.depth > sink)
+                        }
                     };
                     if touches {
-                        return Err(Touch(mover.number as u16, (self.links.len() + index.index()) as u16));
+                        return Err(touch());
                     }
-                    clearance = 0.0;
+                    *clearance = clearance.min((gap - margin) / pace);
                 }
             }
         }
-        Ok(clearance)
+        Ok(())
     }
 }
 
-/// Something that moves, at one place.
-struct Mover<'a> {
+/// What moves in a motion, and at which pace: the part of the motion's travel that it makes at most.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Movers {
+    /// Links that move against the bodies.
+    pub(crate) links: Vec<(LinkIdx, f64)>,
+    /// Pairs of links that move against each other.
+    pub(crate) pairs: Vec<(LinkIdx, LinkIdx, f64)>,
+    /// The held body against the bodies.
+    pub(crate) held: f64,
+    /// Links that the held body moves against, those of the gripper left out.
+    pub(crate) beside_held: Vec<(LinkIdx, f64)>,
+}
+
+impl Movers {
+    /// Links of which nothing is known but that they move.
+    pub(crate) fn of(links: &[LinkIdx]) -> Self {
+        Self { links: links.iter().map(|&l| (l, 1.0)).collect(), held: 1.0, ..Self::default() }
+    }
+}
+
+/// A shape at one place; the number is for messages.
+struct Placed<'a> {
     shape: &'a Shape,
-    world_from_mover: Pose,
+    pose: Pose,
     number: usize,
 }
 
-/// The room between two movers, or their touch; zero when they are close.
-fn pair_clearance(a: &Mover<'_>, b: &Mover<'_>) -> Result<f64, Touch> {
-    let (centre_a, centre_b) = (a.world_from_mover * a.shape.centre, b.world_from_mover * b.shape.centre);
-    let gap = (centre_a - centre_b).norm() - a.shape.radius - b.shape.radius;
-    if gap > 2.0 * ROOM {
-        return Ok(gap);
+/// Lowers `clearance` to what is between two movers, or finds that they touch.
+fn compare(a: &Placed<'_>, b: &Placed<'_>, pace: f64, clearance: &mut f64) -> Result<(), Touch> {
+    let centres = (a.pose * a.shape.centre, b.pose * b.shape.centre);
+    if (centres.0 - centres.1).norm() - a.shape.radius - b.shape.radius > *clearance * pace {
+        return Ok(());
     }
-    let mut clearance = f64::INFINITY;
-    let b_from_a = b.world_from_mover.inv_mul(&a.world_from_mover);
+    let b_from_a = b.pose.inv_mul(&a.pose);
     for part in &a.shape.parts {
         let centre = b_from_a * part.centre;
         for other in &b.shape.parts {
-            let gap = other.bounds.distance_to(&centre) - part.radius;
-            if gap > 2.0 * ROOM {
-                clearance = clearance.min(gap);
+            let far = *clearance * pace;
+            if other.bounds.distance_to(&centre) - part.radius > far
+                || !within(&part.part, &b_from_a, &other.part, &Pose::identity(), far)
+            {
                 continue;
             }
-            if !within(&part.part, &b_from_a, &other.part, &Pose::identity(), 2.0 * ROOM) {
-                clearance = clearance.min(2.0 * ROOM);
-                continue;
-            }
-            if within(&part.part, &b_from_a, &other.part, &Pose::identity(), 0.0) {
+            let gap = distance(&part.part, &b_from_a, &other.part, &Pose::identity()).distance;
+            if gap == 0.0 {
                 return Err(Touch(a.number as u16, b.number as u16));
             }
-            clearance = 0.0;
+            *clearance = clearance.min(gap / pace);
         }
     }
-    Ok(clearance)
+    Ok(())
 }
