@@ -115,13 +115,18 @@ impl MeshIndex {
 
     /// The nearest point of the mesh within `limit` metres of `point`.
     pub fn nearest(&self, point: &Point3<f64>, limit: f64) -> Option<NearestPoint> {
+        self.near_enough(point, limit, -1.0)
+    }
+
+    /// The nearest point within `limit` metres, or any that is within `enough`.
+    pub(super) fn near_enough(&self, point: &Point3<f64>, limit: f64, enough: f64) -> Option<NearestPoint> {
         let mut best: Option<(f64, u32, Point3<f64>)> = None;
         self.0.tree.near(point, limit, |item, limit| {
             let candidate = nearest_on_triangle(point, &self.0.triangles[item as usize]);
             let distance = (candidate - point).norm();
             if distance <= limit && best.is_none_or(|b| (distance, item) < (b.0, b.1)) {
                 best = Some((distance, item, candidate));
-                return distance;
+                return if distance <= enough { -1.0 } else { distance };
             }
             limit
         });

@@ -1,28 +1,30 @@
 //! How far a hull stands off the solid it is meant to cover.
 
+use std::cell::OnceCell;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 
 use super::super::hull::Hull;
 use super::super::{Aabb, MeshIndex};
 use super::Piece;
+use super::outside::Outside;
 
-/// The whole mesh, as a surface with an inside where it is closed.
+/// The whole mesh, as a surface with an inside: all that a ball as wide as the tolerance does not reach from outside.
 pub(super) struct Solid {
     surface: MeshIndex,
-    size: f64,
+    bounds: Aabb,
+    tolerance: f64,
+    outside: OnceCell<Outside>,
 }
 
-/// Rays of the inside test: three skew lines, both ways.
-const RAYS: [[f64; 3]; 3] = [[0.83, 0.31, 0.47], [-0.29, 0.89, 0.35], [0.21, -0.37, 0.91]];
-
 /// The distance of a hull from the solid is found to within this fraction of itself.
-const PRECISION: f64 = 0.05;
+const PRECISION: f64 = 0.1;
 
 impl Solid {
-    pub(super) fn new(whole: &Piece) -> Self {
+    /// The solid of a mesh; a hull may stand off it by `concavity` times its diagonal.
+    pub(super) fn new(whole: &Piece, concavity: f64) -> Self {
         let corners = |f: &[u32; 3]| f.map(|v| whole.vertices[v as usize]);
         let mut triangles: Vec<[Point3<f64>; 3]> = whole.faces.iter().map(corners).collect();
         let mut has_face = vec![false; whole.vertices.len()];
@@ -31,32 +33,35 @@ impl Solid {
         triangles.extend(lone.map(|(p, _)| [*p; 3]));
         let faces = (0..triangles.len() as u32).collect();
         let bounds = Aabb::of_points(&whole.vertices).expect("a piece has vertices");
-        Self { surface: MeshIndex::of_triangles(triangles, faces), size: bounds.diagonal() }
+        let surface = MeshIndex::of_triangles(triangles, faces);
+        Self { surface, bounds, tolerance: concavity * bounds.diagonal(), outside: OnceCell::new() }
     }
 
-    /// Diagonal of the bounding box, metres.
-    pub(super) fn size(&self) -> f64 {
-        self.size
+    /// How far a hull may stand off, metres.
+    pub(super) fn tolerance(&self) -> f64 {
+        self.tolerance
     }
 
-    /// The largest distance of a point of the hull's surface from the solid, to a twentieth of itself, when it is
-    /// above `tolerance`; else anything up to `tolerance`. Not searched further once above `enough`.
+    /// The largest distance of a point of the hull's surface from the solid, to a tenth of itself, when it is
+    /// above the tolerance; else anything up to it. Not searched further once above `enough`.
     ///
     /// Branch and bound, most promising triangle first, since the distance changes by no more than the point moves.
-    pub(super) fn farthest(&self, hull: &Hull, tolerance: f64, enough: f64) -> f64 {
+    pub(super) fn farthest(&self, hull: &Hull, enough: f64) -> f64 {
         let mut farthest: f64 = 0.0;
         let mut open = BinaryHeap::new();
+        let bound = |farthest: f64| self.tolerance.max(farthest) * (1.0 + PRECISION);
         for t in &hull.triangles {
-            let patch = self.patch(t.map(|i| hull.points[i as usize]), tolerance, None);
+            let corners = t.map(|i| hull.points[i as usize]);
+            let Some(patch) = self.patch(corners, bound(farthest), None) else { continue };
             farthest = farthest.max(patch.proven);
             open.push(patch);
         }
         while let Some(patch) = open.pop() {
-            if patch.possible <= tolerance.max(farthest) * (1.0 + PRECISION) || farthest > enough {
+            if patch.possible <= bound(farthest) || farthest > enough {
                 break;
             }
             for half in halves(patch.corners) {
-                let half = self.patch(half, tolerance, Some(&patch));
+                let Some(half) = self.patch(half, bound(farthest), Some(&patch)) else { continue };
                 farthest = farthest.max(half.proven);
                 open.push(half);
             }
@@ -64,17 +69,22 @@ impl Solid {
         farthest
     }
 
-    fn patch(&self, corners: [Point3<f64>; 3], tolerance: f64, parent: Option<&Patch>) -> Patch {
+    /// What is known of a triangle; `None` when no point of it is farther off than `bound`.
+    fn patch(&self, corners: [Point3<f64>; 3], bound: f64, parent: Option<&Patch>) -> Option<Patch> {
         let [a, b, c] = corners;
         let middle = Point3::from((a.coords + b.coords + c.coords) / 3.0);
         let radius = corners.iter().map(|p| (p - middle).norm()).fold(0.0, f64::max);
         let moved = parent.map_or(f64::INFINITY, |p| (p.middle - middle).norm());
         let reach = parent.map_or(f64::INFINITY, |p| (p.distance + moved) * (1.0 + 1e-9));
-        let distance = self.surface.nearest(&middle, reach).map_or(0.0, |n| n.distance);
+        let near_enough = bound - radius;
+        let distance = self.surface.near_enough(&middle, reach, near_enough).map_or(0.0, |n| n.distance);
+        if distance <= near_enough {
+            return None;
+        }
         let mut patch =
             Patch { corners, middle, distance, inside: None, proven: 0.0, possible: distance + radius };
-        if distance <= tolerance {
-            return patch;
+        if distance <= self.tolerance {
+            return Some(patch);
         }
         // No surface lies between the middles when they are nearer to each other than to it.
         let known = parent.filter(|p| moved < p.distance.max(distance)).and_then(|p| p.inside);
@@ -85,33 +95,12 @@ impl Solid {
         } else {
             patch.proven = distance;
         }
-        patch
+        Some(patch)
     }
 
-    /// Whether rays from the point say that it is inside, all but one of them: an odd number of crossings, or more one
-    /// way than the other. An open vessel lets several out; one may slip through a seam.
+    /// Whether a point, farther from the surface than the tolerance, is out of reach from outside.
     fn is_inside(&self, point: &Point3<f64>) -> bool {
-        let mut doubts = 0;
-        for direction in RAYS.iter().flat_map(|&r| [Vector3::from(r), -Vector3::from(r)]) {
-            let (mut turns, mut count) = (0, 0);
-            let mut last = f64::NEG_INFINITY;
-            for hit in self.surface.all_hits(point, &direction, f64::INFINITY) {
-                // The two faces of an edge are one crossing.
-                if hit.at - last < 1e-9 * self.size {
-                    continue;
-                }
-                last = hit.at;
-                count += 1;
-                turns += if hit.normal.dot(&direction) > 0.0 { 1 } else { -1 };
-            }
-            if count % 2 == 0 && turns == 0 {
-                doubts += 1;
-                if doubts > 1 {
-                    return false;
-                }
-            }
-        }
-        true
+        !self.outside.get_or_init(|| Outside::new(&self.surface, &self.bounds, self.tolerance)).reaches(point)
     }
 }
 

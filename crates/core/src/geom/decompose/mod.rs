@@ -8,6 +8,7 @@
 mod concavity;
 mod cut;
 mod merge;
+mod outside;
 mod piece;
 
 use super::hull::convex_hull;
@@ -21,7 +22,8 @@ use piece::Piece;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DecomposeOptions {
     /// How far the hull of a part may stand off the solid before the part is cut, as a fraction of the diagonal of
-    /// the mesh's bounding box. Hollows narrower than about twice this are filled.
+    /// the mesh's bounding box, at least 0.01. Hollows and openings narrower than about twice this are filled, and so
+    /// is what cannot be reached from outside.
     pub concavity: f64,
     /// Most parts; when reached, the hulls are what they are.
     pub max_parts: usize,
@@ -35,6 +37,9 @@ impl Default for DecomposeOptions {
     }
 }
 
+/// Smaller concavities are taken for this: cells of space are counted by its cube.
+const MIN_CONCAVITY: f64 = 0.01;
+
 /// Convex parts that together contain every vertex and every face of `mesh`, and its inside where it is closed.
 ///
 /// One part when the mesh is convex to within the tolerance. The order of the parts follows from the mesh alone.
@@ -42,11 +47,11 @@ impl Default for DecomposeOptions {
 /// left out.
 pub fn decompose(mesh: &TriMesh, options: &DecomposeOptions) -> Result<ConvexParts, HullError> {
     let whole = Piece::new(mesh)?;
-    let solid = Solid::new(&whole);
-    let tolerance = options.concavity.max(1e-4) * solid.size();
+    let solid = Solid::new(&whole, options.concavity.max(MIN_CONCAVITY));
+    let tolerance = solid.tolerance();
     let max_parts = options.max_parts.max(1);
 
-    let mut open = vec![Measured::new(whole, &solid, tolerance)?];
+    let mut open = vec![Measured::new(whole, &solid)?];
     let mut done: Vec<Measured> = Vec::new();
     while !open.is_empty() && open.len() + done.len() < max_parts {
         let worst = (0..open.len()).reduce(|a, b| if open[b].concavity > open[a].concavity { b } else { a });
@@ -58,14 +63,14 @@ pub fn decompose(mesh: &TriMesh, options: &DecomposeOptions) -> Result<ConvexPar
         let halves = cut::best_plane(&worst.piece).and_then(|plane| worst.piece.cut(&plane));
         match halves {
             Some((low, high)) => {
-                open.push(Measured::new(low, &solid, tolerance)?);
-                open.push(Measured::new(high, &solid, tolerance)?);
+                open.push(Measured::new(low, &solid)?);
+                open.push(Measured::new(high, &solid)?);
             }
             None => done.push(worst),
         }
     }
     done.append(&mut open);
-    let joined = merge::join(done, &solid, tolerance)?;
+    let joined = merge::join(done, &solid)?;
 
     let mut parts: Vec<ConvexPart> = Vec::with_capacity(joined.len());
     for measured in &joined {
@@ -84,9 +89,9 @@ struct Measured {
 }
 
 impl Measured {
-    fn new(piece: Piece, solid: &Solid, tolerance: f64) -> Result<Self, HullError> {
+    fn new(piece: Piece, solid: &Solid) -> Result<Self, HullError> {
         let hull = convex_hull(&piece.vertices)?;
-        let concavity = solid.farthest(&hull, tolerance, f64::INFINITY);
+        let concavity = solid.farthest(&hull, f64::INFINITY);
         let volume = hull.volume();
         Ok(Self { piece, hull, concavity, volume })
     }
