@@ -62,7 +62,9 @@ fn header(program: &Program, out: &mut String) {
         );
     }
     out.push_str("\n#![allow(dead_code, unused_imports, unused_variables, clippy::all)]\n\n");
-    out.push_str("pub use kernel::chain::{Frame, Link};\nuse kernel::candidate::{Arm, WIDER};\n");
+    out.push_str(
+        "pub use kernel::chain::{Frame, Link};\nuse kernel::candidate::{Arm, MOST_MISSES, WIDER};\n",
+    );
     out.push_str("use kernel::math::{cos_sin, sqrt};\nuse kernel::roots::*;\n\n");
 }
 
@@ -151,6 +153,7 @@ struct Sink<'a> {
     free: &'a [f64; FREE.len()],
     out: &'a mut Solutions,
     accepted: usize,
+    misses: usize,
 }
 
 impl Sink<'_> {
@@ -160,7 +163,8 @@ impl Sink<'_> {
         for (variable, value) in FREE.iter().zip(self.free) {
             values[*variable] = *value;
         }
-        if !self.arm.settle(self.base_from_tip, &steps, &mut values) {
+        if self.misses >= MOST_MISSES || !self.arm.settle(self.base_from_tip, &steps, &mut values) {
+            self.misses += 1;
             return;
         }
         self.accepted += 1;
@@ -195,10 +199,10 @@ fn solve(program: &Program, out: &mut String) {
         "/// As [`solve`], for a chain whose constants are near those of the described one.\n\
          pub fn solve_on(chain: &Chain, base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {\n    \
          out.len = 0;\n    \
-         let mut sink = Sink { arm: arm(chain), base_from_tip, free, out, accepted: 0 };\n    \
+         let mut sink = Sink { arm: arm(chain), base_from_tip, free, out, accepted: 0, misses: 0 };\n    \
          attempt(base_from_tip, free, SLACK, &mut sink);\n    \
          for slack in WIDER {\n        \
-         if sink.accepted == 0 && slack > SLACK {\n            \
+         if sink.accepted == 0 && slack > SLACK {\n            sink.misses = 0;\n            \
          attempt(base_from_tip, free, slack, &mut sink);\n        }\n    }\n}\n\n\
          /// Offers candidates; the equations may miss their roots by `slack`.\n\
          fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &mut Sink<'_>) {\n    \

@@ -14,6 +14,9 @@ use crate::passes;
 use crate::report::poses::sets;
 use crate::run::Solver;
 
+/// Snaps below this come from the digits of the description: they need a polish, but hide no roots.
+const ROUNDING: f64 = 1e-8;
+
 /// Choices of a compilation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
@@ -192,7 +195,7 @@ fn attempt(
                     // Below this the difference is rounding of the description, which the check covers.
                     let snap = problem.snap();
                     program.snap = if snap < 1e-12 { 0.0 } else { snap };
-                    program.slack = 4.0 * program.snap;
+                    program.slack = if snap < ROUNDING { 0.0 } else { 4.0 * snap };
                     program.class = class.clone();
                     let program = passes::optimise(&program);
                     match trial(&program, chain, options) {

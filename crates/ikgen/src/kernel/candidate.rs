@@ -10,6 +10,10 @@ pub const SAME: f64 = 1e-7;
 /// alone can hide the roots of an equation.
 pub const WIDER: [f64; 2] = [1e-5, 2e-3];
 
+/// Wrong candidates of one attempt after which the rest is not looked at. Only attempts with wide slack at poses that cannot
+/// be reached come near it; without it they could take milliseconds.
+pub const MOST_MISSES: usize = 256;
+
 /// The chain that solutions must satisfy.
 #[derive(Clone, Copy, Debug)]
 pub struct Arm<'a> {

@@ -6,7 +6,7 @@ use robotc_core::model::SerialChain;
 
 use super::{Bytecode, TooLarge, TrueChain, frame, interpreter};
 use crate::ir::{Program, TextError};
-use crate::kernel::candidate::WIDER;
+use crate::kernel::candidate::{MOST_MISSES, WIDER};
 use crate::kernel::chain::{Frame, MAX_JOINTS};
 
 /// What runs the program.
@@ -107,7 +107,12 @@ impl Solver {
     }
 
     fn attempt(&self, base_from_tip: &Frame, free: &[f64], slack: f64, out: &mut IkSolutions) -> usize {
-        let mut offer = |steps: &[[f64; 2]]| self.accept(base_from_tip, free, steps, out);
+        let mut misses = 0;
+        let mut offer = |steps: &[[f64; 2]]| {
+            let right = misses < MOST_MISSES && self.accept(base_from_tip, free, steps, out);
+            misses += usize::from(!right);
+            right
+        };
         match self.engine {
             Engine::Bytecode => self.code.run(base_from_tip, free, slack, &mut offer),
             Engine::Interpreter => interpreter::run(&self.program, base_from_tip, free, slack, &mut offer),

@@ -6,7 +6,7 @@ use robotc_core::model::{ChainJoint, ChainMotion, ChainVariable, SerialChain};
 use robotc_core::{DofIdx, Pose};
 
 /// A chain whose joint frames are all parallel to the base at zero: axis and position of each joint, then of the tip.
-pub fn chain(name: &str, joints: &[([f64; 3], [f64; 3])], tip: [f64; 3]) -> SerialChain {
+pub(crate) fn chain(name: &str, joints: &[([f64; 3], [f64; 3])], tip: [f64; 3]) -> SerialChain {
     let mut at = Vector3::zeros();
     let mut make = |i: usize, axis: &[f64; 3], point: &[f64; 3]| {
         let point = Vector3::from(*point);
@@ -37,7 +37,7 @@ const Y: [f64; 3] = [0.0, 1.0, 0.0];
 const Z: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// Spherical wrist, axes 2 and 3 parallel (KUKA KR6 R900).
-pub fn kr6() -> SerialChain {
+pub(crate) fn kr6() -> SerialChain {
     chain(
         "kr6",
         &[
@@ -53,7 +53,7 @@ pub fn kr6() -> SerialChain {
 }
 
 /// Spherical wrist on a shoulder without any relation between its axes.
-pub fn skew() -> SerialChain {
+pub(crate) fn skew() -> SerialChain {
     chain(
         "skew",
         &[
@@ -69,7 +69,7 @@ pub fn skew() -> SerialChain {
 }
 
 /// Axes 2, 3 and 4 parallel (Universal Robots UR5).
-pub fn ur5() -> SerialChain {
+pub(crate) fn ur5() -> SerialChain {
     chain(
         "ur5",
         &[
@@ -85,7 +85,7 @@ pub fn ur5() -> SerialChain {
 }
 
 /// The same turned round: axes 3, 4 and 5 parallel.
-pub fn ru5() -> SerialChain {
+pub(crate) fn ru5() -> SerialChain {
     chain(
         "ru5",
         &[
@@ -101,7 +101,7 @@ pub fn ru5() -> SerialChain {
 }
 
 /// Spherical shoulder on six joints: the arm of `kr6` turned round.
-pub fn shoulder() -> SerialChain {
+pub(crate) fn shoulder() -> SerialChain {
     chain(
         "shoulder",
         &[
@@ -117,7 +117,7 @@ pub fn shoulder() -> SerialChain {
 }
 
 /// Seven joints, spherical shoulder, offset elbow and wrist (Franka Panda).
-pub fn panda() -> SerialChain {
+pub(crate) fn panda() -> SerialChain {
     chain(
         "panda",
         &[
@@ -134,7 +134,7 @@ pub fn panda() -> SerialChain {
 }
 
 /// Seven joints, spherical shoulder and wrist (KUKA LBR iiwa).
-pub fn iiwa() -> SerialChain {
+pub(crate) fn iiwa() -> SerialChain {
     chain(
         "iiwa",
         &[
@@ -151,7 +151,7 @@ pub fn iiwa() -> SerialChain {
 }
 
 /// Seven joints, offset shoulder, spherical wrist: the given joint lies between unknown ones (Fetch).
-pub fn fetch() -> SerialChain {
+pub(crate) fn fetch() -> SerialChain {
     chain(
         "fetch",
         &[
@@ -168,7 +168,7 @@ pub fn fetch() -> SerialChain {
 }
 
 /// Five joints: pan, three parallel axes, roll (Katana).
-pub fn katana() -> SerialChain {
+pub(crate) fn katana() -> SerialChain {
     chain(
         "katana",
         &[
@@ -183,7 +183,7 @@ pub fn katana() -> SerialChain {
 }
 
 /// Four joints: spherical shoulder and elbow (Barrett WAM without its wrist).
-pub fn wam4() -> SerialChain {
+pub(crate) fn wam4() -> SerialChain {
     chain(
         "wam4",
         &[(Z, [0.0, 0.0, 0.3]), (Y, [0.0, 0.0, 0.3]), (Z, [0.0, 0.0, 0.3]), (Y, [0.045, 0.0, 0.85])],
@@ -192,6 +192,6 @@ pub fn wam4() -> SerialChain {
 }
 
 /// All of them.
-pub fn all() -> Vec<SerialChain> {
+pub(crate) fn all() -> Vec<SerialChain> {
     vec![kr6(), skew(), ur5(), ru5(), shoulder(), panda(), iiwa(), fetch(), katana(), wam4()]
 }

@@ -1,5 +1,7 @@
 //! Tests of the compiler as a whole.
 
+#![allow(clippy::print_stdout)]
+
 mod arms;
 mod classes;
 mod generated;

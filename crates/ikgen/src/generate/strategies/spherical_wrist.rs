@@ -22,10 +22,8 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
     {
         return Err("two axes of the wrist are parallel".into());
     }
-    if let Some((before, _)) = problem.given {
-        if before > 3 {
-            return Err("the given joint is inside of the wrist".into());
-        }
+    if problem.given.is_some_and(|(before, _)| before > 3) {
+        return Err("the given joint is inside of the wrist".into());
     }
     for axis in &mut problem.axes[3..] {
         axis.point = centre;

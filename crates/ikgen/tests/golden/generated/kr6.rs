@@ -7,7 +7,7 @@
 #![allow(dead_code, unused_imports, unused_variables, clippy::all)]
 
 pub use kernel::chain::{Frame, Link};
-use kernel::candidate::{Arm, WIDER};
+use kernel::candidate::{Arm, MOST_MISSES, WIDER};
 use kernel::math::{cos_sin, sqrt};
 use kernel::roots::*;
 
@@ -164,6 +164,7 @@ struct Sink<'a> {
     free: &'a [f64; FREE.len()],
     out: &'a mut Solutions,
     accepted: usize,
+    misses: usize,
 }
 
 impl Sink<'_> {
@@ -173,7 +174,8 @@ impl Sink<'_> {
         for (variable, value) in FREE.iter().zip(self.free) {
             values[*variable] = *value;
         }
-        if !self.arm.settle(self.base_from_tip, &steps, &mut values) {
+        if self.misses >= MOST_MISSES || !self.arm.settle(self.base_from_tip, &steps, &mut values) {
+            self.misses += 1;
             return;
         }
         self.accepted += 1;
@@ -204,10 +206,11 @@ fn max(a: f64, b: f64) -> f64 {
 /// As [`solve`], for a chain whose constants are near those of the described one.
 pub fn solve_on(chain: &Chain, base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {
     out.len = 0;
-    let mut sink = Sink { arm: arm(chain), base_from_tip, free, out, accepted: 0 };
+    let mut sink = Sink { arm: arm(chain), base_from_tip, free, out, accepted: 0, misses: 0 };
     attempt(base_from_tip, free, SLACK, &mut sink);
     for slack in WIDER {
         if sink.accepted == 0 && slack > SLACK {
+            sink.misses = 0;
             attempt(base_from_tip, free, slack, &mut sink);
         }
     }
@@ -938,6 +941,10 @@ mod kernel {
         /// Slacks of the further attempts at a pose that gave no solution: at poses where several axes line up at once, rounding
         /// alone can hide the roots of an equation.
         pub const WIDER: [f64; 2] = [1e-5, 2e-3];
+
+        /// Wrong candidates of one attempt after which the rest is not looked at. Only attempts with wide slack at poses that cannot
+        /// be reached come near it; without it they could take milliseconds.
+        pub const MOST_MISSES: usize = 256;
 
         /// The chain that solutions must satisfy.
         #[derive(Clone, Copy, Debug)]
