@@ -9,9 +9,11 @@ use super::complete::completions;
 use super::facts::Facts;
 use super::problem::Problem;
 use super::strategies::{self, Strategy};
+use crate::check;
 use crate::ir::Program;
 use crate::passes;
-use crate::report::poses::sets;
+use crate::report::RECOVERED;
+use crate::report::poses::{sets, slides};
 use crate::run::Solver;
 
 /// Snaps below this come from the digits of the description: they need a polish, but hide no roots.
@@ -152,7 +154,7 @@ fn search(
 struct Found {
     program: Program,
     class: String,
-    /// Singular trial poses without a solution.
+    /// Singular trial poses without a solution, random ones without the generating one.
     lost: usize,
 }
 
@@ -200,7 +202,7 @@ fn attempt(
                     let program = passes::optimise(&program);
                     match trial(&program, chain, options) {
                         Ok(lost) => {
-                            line += &format!("{how}; solved, {lost} of the singular trial poses lost");
+                            line += &format!("{how}; solved, {lost} trial poses lost");
                             trace.push(line);
                             return Ok(Found { program, class, lost });
                         }
@@ -217,12 +219,14 @@ fn attempt(
     Err(failure)
 }
 
-/// Runs a program on random and singular poses: how many of the latter it lost, or why it is no good.
+/// Runs a program on random and singular poses: how many joint vectors of the former it did not recover and how many of
+/// the latter it did not solve, or why it is no good.
 fn trial(program: &Program, chain: &SerialChain, options: &Options) -> Result<usize, String> {
     program.validate().map_err(|e| format!("the program is not valid: {e}"))?;
     let solver = Solver::new(program.clone(), chain).map_err(|e| e.to_string())?;
     let mut out = IkSolutions::new();
     let mut lost = 0;
+    let slides = slides(chain);
     let seed = Seed::new(0).split("ikgen trial");
     for set in sets(chain, &program.free, options.trial_poses, seed) {
         let mut solved = 0;
@@ -230,6 +234,8 @@ fn trial(program: &Program, chain: &SerialChain, options: &Options) -> Result<us
             let free: Vec<f64> = program.free.iter().map(|v| values[*v]).collect();
             solver.solve(&chain.forward(values), &free, &mut out);
             solved += usize::from(!out.is_empty());
+            let found = |other| check::same(other, values, &slides, RECOVERED);
+            lost += usize::from(set.regular && !out.is_empty() && !out.iter().any(found));
         }
         let missed = set.vectors.len() - solved;
         if set.regular && missed > 0 {
