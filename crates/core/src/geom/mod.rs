@@ -27,6 +27,6 @@ pub use mesh_index::{MeshIndex, NearestPoint, RayHit};
 pub use part::{ConvexPart, PartError, Plane};
 pub use parts::ConvexParts;
 pub use primitive::{box_part, capsule_part, cylinder_part, sphere_part};
-pub use query::{Contact, Distance, contact, distance, intersects, within};
+pub use query::{Contact, Distance, any_within, contact, distance, intersects, within};
 pub use shape::{parts_of, parts_of_shape};
 pub use surface::surface;

@@ -2,9 +2,9 @@
 
 use nalgebra::{Point3, Translation3, Unit, Vector3};
 
-use super::ConvexPart;
 use super::gjk::{Ask, Gap, Pair};
 use super::penetration::shortest_exit;
+use super::{ConvexPart, ConvexParts};
 use crate::Pose;
 
 /// The distance of two parts with their nearest points, in the world.
@@ -43,6 +43,33 @@ pub fn within(a: &ConvexPart, world_from_a: &Pose, b: &ConvexPart, world_from_b:
         Gap::Far => false,
         Gap::Overlap { .. } | Gap::Near | Gap::Apart { .. } => true,
     }
+}
+
+/// Whether some part of `a` and some part of `b` are not more than `margin` metres apart. "No" is certain; doubt counts
+/// as "yes". Parts whose bounding spheres are far from each other are not looked at.
+pub fn any_within(
+    a: &ConvexParts,
+    world_from_a: &Pose,
+    b: &ConvexParts,
+    world_from_b: &Pose,
+    margin: f64,
+) -> bool {
+    let a_from_b = world_from_a.inv_mul(world_from_b);
+    let rotation = *a_from_b.rotation.to_rotation_matrix().matrix();
+    let shift = a_from_b.translation.vector;
+    b.iter().any(|part_b| {
+        let (centre, radius_b) = part_b.bounding_sphere();
+        let centre = Point3::from(rotation * centre.coords + shift);
+        a.iter().any(|part_a| {
+            // A nanometre more than the margin, for rounding.
+            let reach = radius_b + margin + 1e-9;
+            if part_a.bounds().distance_to(&centre) > reach {
+                return false;
+            }
+            let pair = Pair::with_matrix(part_a, part_b, rotation, shift);
+            !matches!(pair.gap(margin, Ask::Whether), Gap::Far)
+        })
+    })
 }
 
 /// The distance of the parts and their nearest points, good to a nanometre.
@@ -193,6 +220,31 @@ mod tests {
             }
         }
         assert!(apart > 300 && deep > 300, "{apart} {deep}");
+    }
+
+    #[test]
+    fn lists_of_parts_touch_when_some_pair_does() {
+        let mut rng = Seed::new(12).rng();
+        let mut touching = 0;
+        for _ in 0..300 {
+            let mut draw = || {
+                let n = rng.below(4);
+                let mut parts = ConvexParts::default();
+                for _ in 0..n {
+                    let pose = random_pose(&mut rng);
+                    let part = random_part(&mut rng);
+                    parts.extend(ConvexParts::new(vec![part]).transformed(&pose));
+                }
+                (parts, random_pose(&mut rng))
+            };
+            let ((a, world_from_a), (b, world_from_b)) = (draw(), draw());
+            let margin = rng.range(0.0, 0.2);
+            let one = |p: &ConvexPart, q: &ConvexPart| within(p, &world_from_a, q, &world_from_b, margin);
+            let expected = a.iter().any(|p| b.iter().any(|q| one(p, q)));
+            assert_eq!(any_within(&a, &world_from_a, &b, &world_from_b, margin), expected);
+            touching += usize::from(expected);
+        }
+        assert!(touching > 50 && touching < 250, "{touching}");
     }
 
     #[test]

@@ -21,7 +21,7 @@ crate::parameters! {
     /// Parameters of [`ConvexParts`].
     pub struct ConvexPartsParameters {
         /// How far a part may stand off the solid before it is cut, as a fraction of the size of its mesh.
-        concavity: f64 [""] in 0.001..=1.0 = 0.03;
+        concavity: f64 [""] in 0.01..=1.0 = 0.03;
         /// Most parts of one mesh.
         max_parts: u32 [""] in 1..=1024 = 32;
         /// Most corners of one part.
@@ -49,7 +49,7 @@ struct StoredPart {
 impl Kind for ConvexParts {
     const NAME: &'static str = "convex_parts";
     const FORMAT: u32 = 1;
-    const ALGORITHM: u32 = 2;
+    const ALGORITHM: u32 = 3;
     const PORTABILITY: Portability = Portability::Portable;
     const DOC: &'static str = "Convex parts that cover the collision geometry of a link, object or obstacle. Collision checks compute with them.";
 

@@ -179,9 +179,11 @@ struct Stored {
 
 #[cfg(feature = "build")]
 mod build {
+    use std::sync::Arc;
+
+    use robotc_core::geom::{ConvexParts as Parts3, any_within};
     use robotc_core::{Configuration, LinkPoses, TypedVec};
     use robotc_ikgen::Solver;
-    use robotc_planning::scene::{Rules, Scene};
 
     use super::search::{Search, SearchOptions, witness_is_true};
     use super::*;
@@ -204,12 +206,12 @@ mod build {
                 .ok_or_else(|| BuildError::Impossible("the first joint of the arm does not turn".into()))?;
             let model = inputs.mechanism.model();
             let kinematics = Kinematics::new(model.clone());
-            let mut links: TypedVec<LinkIdx, _> = model.links().iter().map(|_| Default::default()).collect();
+            let mut links: TypedVec<LinkIdx, Arc<Parts3>> =
+                model.links().iter().map(|_| Default::default()).collect();
             for (link, dep) in &inputs.bodies {
-                links[*link] = (*context.load(dep)?).clone();
+                links[*link] = context.load(dep)?;
             }
-            let pairs = context.load(&inputs.pairs)?.tested().collect();
-            let scene = Scene::new(&kinematics, Pose::identity(), &links, pairs, Vec::new());
+            let pairs: Vec<_> = context.load(&inputs.pairs)?.tested().collect();
             let dofs: Vec<_> = chain.variables.iter().map(|v| v.dof).collect();
             let neutral = Configuration::neutral(model);
             let collides = |joints: &[f64]| {
@@ -217,7 +219,10 @@ mod build {
                 q.set(&dofs, joints);
                 let mut poses = LinkPoses::default();
                 kinematics.link_poses(&q, &mut poses);
-                scene.against_self(&poses, &Rules::default()).is_err()
+                let touch = |&(a, b): &(LinkIdx, LinkIdx)| {
+                    any_within(&links[a], poses.root_from(a), &links[b], poses.root_from(b), 0.0)
+                };
+                pairs.iter().any(touch)
             };
             let options = SearchOptions { free_samples: parameters.free_samples as usize };
             let rows: Vec<usize> = (0..grid.radial).collect();
