@@ -7,8 +7,10 @@ pub mod execute;
 pub mod film;
 pub mod record;
 pub mod session;
+pub mod table;
 pub mod view;
 
 pub use execute::{Execution, ExecutionError, execute};
 pub use film::film;
 pub use session::{Session, SessionError};
+pub use table::MotionTable;

@@ -1,9 +1,12 @@
 //! One file per command; one line each in [`Command`] and [`run`].
 
+mod check;
 mod compile;
 mod explain;
 mod graph;
+mod init;
 mod kb;
+mod run;
 mod schema;
 
 use clap::Subcommand;
@@ -12,20 +15,26 @@ use crate::output::Outcome;
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
+    Check(check::Check),
     Compile(compile::Compile),
     Explain(explain::Explain),
     Graph(graph::Graph),
+    Init(init::Init),
     Kb(kb::Kb),
+    Run(run::Run),
     Schema(schema::Schema),
 }
 
 /// Does what the command line asks for.
 pub(crate) fn run(command: Command) -> Outcome {
     match command {
+        Command::Check(args) => check::run(&args),
         Command::Compile(args) => compile::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Graph(args) => graph::run(&args),
+        Command::Init(args) => init::run(&args),
         Command::Kb(args) => kb::run(&args),
+        Command::Run(args) => run::run(&args),
         Command::Schema(args) => schema::run(&args),
     }
 }

@@ -1,0 +1,64 @@
+//! `robotc init`: a first robot specification for a description.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use clap::Args;
+use robotc_core::Sources;
+use robotc_core::spec::{self, InitOptions};
+use robotc_kb::os::OsSystem;
+
+use super::compile::write_whole;
+use crate::output::{Failure, Outcome, print_text, report, say};
+
+/// Write a commented robot specification for a URDF or xacro file, with guesses to be checked
+#[derive(Args)]
+#[command(
+    after_help = "Examples:\n  robotc init arm.urdf -o arm.robot.toml\n  robotc init arm.urdf --srdf arm.srdf"
+)]
+pub(crate) struct Init {
+    /// URDF or xacro file
+    description: PathBuf,
+    /// SRDF with groups, end effectors and disabled pairs
+    #[arg(long, value_name = "FILE")]
+    srdf: Option<PathBuf>,
+    /// MoveIt's joint_limits.yaml
+    #[arg(long, value_name = "FILE")]
+    joint_limits: Option<PathBuf>,
+    /// Folder of a package that the description refers to; may be given several times
+    #[arg(long, value_name = "NAME=FOLDER", value_parser = package)]
+    package: Vec<(String, PathBuf)>,
+    /// File to write [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: &Init) -> Outcome {
+    let mut sources = Sources::new();
+    let options = InitOptions {
+        description: args.description.clone(),
+        srdf: args.srdf.clone(),
+        joint_limits: args.joint_limits.clone(),
+        packages: args.package.iter().cloned().collect::<BTreeMap<_, _>>(),
+        folder: args.output.as_ref().and_then(|path| path.parent()).map(PathBuf::from).unwrap_or_default(),
+    };
+    let (text, found) = spec::init(&OsSystem, &mut sources, &options);
+    report(&found, &sources);
+    let text = text.ok_or(Failure::Reported)?;
+    match &args.output {
+        None => print_text(&text),
+        Some(path) if path.exists() => {
+            return Err(Failure::Input(format!("{} is there already; remove it first", path.display())));
+        }
+        Some(path) => {
+            write_whole(path, text.as_bytes())?;
+            say(&format!("wrote {}; read its comments and check the guesses", path.display()));
+        }
+    }
+    Ok(())
+}
+
+fn package(text: &str) -> Result<(String, PathBuf), String> {
+    let (name, folder) = text.split_once('=').ok_or("expected NAME=FOLDER")?;
+    Ok((name.to_owned(), PathBuf::from(folder)))
+}

@@ -1,0 +1,297 @@
+//! `robotc run`: from a task specification to a robot that has done it, in a kinematic simulation.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+use robotc_core::Seed;
+use robotc_kb::{Knowledge, Project};
+use robotc_planning::manipulation::{ManipulationOptions, Plan, SegmentKind};
+use robotc_planning::{Budget, Interrupt};
+use robotc_runtime::film::{TreeKeeper, film};
+use robotc_runtime::record::Recording;
+use robotc_runtime::{Execution, MotionTable, Session, execute, view};
+use serde::Serialize;
+
+use super::compile::write_whole;
+use crate::knowledge::{self, StoreArgs};
+use crate::output::{Failure, Outcome, count, print, say};
+
+/// Compile what a task needs, plan it, and run it in a kinematic simulation
+#[derive(Args)]
+#[command(after_help = "Examples:\n  robotc run specs/tasks/mug_to_shelf.task.toml --view out.html\n  \
+    robotc run pick.task.toml --seed 7 --trajectory motion.csv --report run.json\n\n\
+    The page of --view opens offline in any browser; the file of --glb in any glTF viewer.")]
+pub(crate) struct Run {
+    /// A `*.task.toml` file
+    task: PathBuf,
+    /// Write a 3-D replay as one HTML file
+    #[arg(long, value_name = "FILE.html")]
+    view: Option<PathBuf>,
+    /// Write the replay as binary glTF with its animation
+    #[arg(long, value_name = "FILE.glb")]
+    glb: Option<PathBuf>,
+    /// Write the motion of all joints: names, times, positions, velocities, accelerations
+    #[arg(long, value_name = "FILE.json|FILE.csv")]
+    trajectory: Option<PathBuf>,
+    /// Write times, lengths, seed, artefacts and outcome
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+    /// Seed of the planner [default: that of the task]
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Longest time to plan, seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0)]
+    time_limit: f64,
+    #[command(flatten)]
+    store: StoreArgs,
+}
+
+/// Largest travel of any point of the robot between two looks of the final check, metres.
+const CERTIFIED_STEP: f64 = 0.002;
+/// Ticks a second of the simulated controller.
+const CONTROL_RATE: f64 = 250.0;
+
+pub(crate) fn run(args: &Run) -> Outcome {
+    check_outputs(args)?;
+    let mut clock = Clock::default();
+    let spec = clock.stage("check", || crate::input::task(&args.task))?;
+    let project = Project::of_task(&spec);
+    let store = args.store.open()?;
+    let graph = knowledge::plan(&project)?;
+    let compiled = clock.stage("compile", || knowledge::compile(&graph, &store))?;
+    match compiled.built().count() {
+        0 => say(&format!("knowledge base: {}, all up to date", count(graph.nodes().len(), "artefact"))),
+        built => {
+            say(&format!("knowledge base: {}, {built} computed", count(graph.nodes().len(), "artefact")))
+        }
+    }
+    let session = clock.stage("load", || Session::open(&compiled.knowledge));
+    let session = session.map_err(|error| Failure::Input(error.to_string()))?;
+    let seed = args.seed.unwrap_or(session.task().seed);
+
+    let options = ManipulationOptions::default();
+    let mut trees = TreeKeeper::default();
+    let planned = clock.stage("plan", || {
+        let start = Instant::now();
+        let interrupt = || {
+            if knowledge::interrupted() {
+                Some(Interrupt::Cancelled)
+            } else {
+                (start.elapsed().as_secs_f64() > args.time_limit).then_some(Interrupt::TimeUp)
+            }
+        };
+        session.plan(&options, &Budget::new(&interrupt), Seed::new(seed), &mut trees)
+    });
+    let done = planned.map_err(|error| error.to_string()).and_then(|plan| {
+        let checked = clock.stage("certify", || session.certify(&options, &plan, CERTIFIED_STEP));
+        checked.map_err(|error| format!("the plan does not hold: {error}"))?;
+        let execution =
+            clock.stage("execute", || execute(session.world(), session.task(), &plan, CONTROL_RATE));
+        Ok((execution.map_err(|error| error.to_string())?, plan))
+    });
+    let outcome = match &done {
+        Err(reason) => reason.clone(),
+        Ok((execution, plan)) => verdict(&session, execution, plan),
+    };
+    if let Ok((execution, plan)) = &done {
+        write_results(args, &session, execution, plan, &trees, seed, &mut clock)?;
+    }
+    if let Some(path) = &args.report {
+        let report = Report::new(&outcome, &clock, seed, &compiled.knowledge, &session, done.as_ref().ok());
+        let text = serde_json::to_string_pretty(&report).expect("plain values always have a JSON form");
+        write_whole(path, text.as_bytes())?;
+    }
+    clock.print();
+    if outcome == SUCCESS { Ok(()) } else { Err(Failure::Input(outcome)) }
+}
+
+const SUCCESS: &str = "success";
+
+/// `success`, or what is missing.
+fn verdict(session: &Session, execution: &Execution, plan: &Plan) -> String {
+    if let Some(skipped) = plan.skipped.first() {
+        return format!("{} not reached: {}", count(plan.skipped.len(), "goal"), skipped.reason);
+    }
+    match execution.missed_goals(session.task(), plan).first() {
+        Some((goal, off)) => format!("goal {goal} missed by {off:.4} m"),
+        None => SUCCESS.to_owned(),
+    }
+}
+
+fn write_results(
+    args: &Run,
+    session: &Session,
+    execution: &Execution,
+    plan: &Plan,
+    trees: &TreeKeeper,
+    seed: u64,
+    clock: &mut Clock,
+) -> Outcome {
+    for segment in &execution.segments {
+        let [start, end] = segment.span;
+        print(&format!("{start:7.2} s  {:8} {:5.2} s", segment.kind.to_string(), end - start));
+    }
+    print(&format!("{}, {:.2} s of motion", count(plan.choices.len(), "object"), execution.duration()));
+    if args.view.is_some() || args.glb.is_some() {
+        let recording = clock.stage("film", || recording(session, execution, plan, trees, seed));
+        if let Some(path) = &args.view {
+            write_whole(path, view::html(&recording).as_bytes())?;
+            say(&format!("wrote {}; open it in a browser", path.display()));
+        }
+        if let Some(path) = &args.glb {
+            write_whole(path, &view::glb(&recording))?;
+            say(&format!("wrote {}", path.display()));
+        }
+    }
+    if let Some(path) = &args.trajectory {
+        let table = MotionTable::of(&session.task().robot.model, &session.task().start, plan);
+        let csv = path.extension().is_some_and(|extension| extension == "csv");
+        write_whole(path, if csv { table.to_csv() } else { table.to_json() }.as_bytes())?;
+        say(&format!("wrote {}", path.display()));
+    }
+    Ok(())
+}
+
+fn recording(
+    session: &Session,
+    execution: &Execution,
+    plan: &Plan,
+    trees: &TreeKeeper,
+    seed: u64,
+) -> Recording {
+    let mut recording = film(session, execution, trees);
+    recording
+        .add_fact("robot", session.task().robot.model.name())
+        .add_fact("objects moved", plan.choices.len())
+        .add_fact("motion", format!("{:.1} s", execution.duration()))
+        .add_fact("seed", seed);
+    recording
+}
+
+/// Seconds of each stage, in order.
+#[derive(Default)]
+struct Clock {
+    stages: Vec<StageTime>,
+}
+
+#[derive(Serialize)]
+struct StageTime {
+    name: &'static str,
+    seconds: f64,
+}
+
+impl Clock {
+    fn stage<R>(&mut self, name: &'static str, work: impl FnOnce() -> R) -> R {
+        let start = Instant::now();
+        let result = work();
+        self.stages.push(StageTime { name, seconds: start.elapsed().as_secs_f64() });
+        result
+    }
+
+    fn seconds(&self, name: &str) -> f64 {
+        self.stages.iter().filter(|s| s.name == name).map(|s| s.seconds).sum()
+    }
+
+    fn print(&self) {
+        let all: Vec<String> = self.stages.iter().map(|s| format!("{} {:.3} s", s.name, s.seconds)).collect();
+        say(&all.join(", "));
+    }
+}
+
+/// The file of `--report`.
+#[derive(Serialize)]
+struct Report<'a> {
+    outcome: &'a str,
+    stages: &'a [StageTime],
+    plan_seconds: f64,
+    seed: u64,
+    motion_seconds: f64,
+    segments: Vec<SegmentReport>,
+    artefacts: Vec<ArtefactReport>,
+}
+
+#[derive(Serialize)]
+struct SegmentReport {
+    kind: String,
+    goal: usize,
+    seconds: f64,
+    /// Length of the path of the joints, radians and metres.
+    joint_length: f64,
+    /// Length of the path of the tool, metres; zero for motions of the fingers.
+    tool_length: f64,
+}
+
+#[derive(Serialize)]
+struct ArtefactReport {
+    kind: &'static str,
+    subject: String,
+    key: String,
+    content: String,
+}
+
+impl<'a> Report<'a> {
+    fn new(
+        outcome: &'a str,
+        clock: &'a Clock,
+        seed: u64,
+        knowledge: &Knowledge,
+        session: &Session,
+        done: Option<&(Execution, Plan)>,
+    ) -> Self {
+        let graph = knowledge.graph();
+        let mut artefacts = Vec::new();
+        for index in graph.indices() {
+            let (node, known) = (graph.node(index), knowledge.known(index));
+            for subject in &node.subjects {
+                artefacts.push(ArtefactReport {
+                    kind: node.kind_name(),
+                    subject: subject.clone(),
+                    key: known.map_or_else(String::new, |k| k.key.to_string()),
+                    content: known.map_or_else(String::new, |k| k.content.to_string()),
+                });
+            }
+        }
+        let segments = done.map_or_else(Vec::new, |(_, plan)| segments(session, plan));
+        let motion_seconds = done.map_or(0.0, |(execution, _)| execution.duration());
+        let plan_seconds = clock.seconds("plan");
+        Self { outcome, stages: &clock.stages, plan_seconds, seed, motion_seconds, segments, artefacts }
+    }
+}
+
+fn segments(session: &Session, plan: &Plan) -> Vec<SegmentReport> {
+    let arm = session.arm();
+    let report = |segment: &robotc_planning::manipulation::Segment| {
+        let knots = segment.trajectory.knots();
+        let norm = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+        let tool = |q: &[f64]| arm.world_from_tool(q).translation.vector;
+        let fingers =
+            matches!(segment.kind, SegmentKind::Preshape | SegmentKind::Grasp | SegmentKind::Release);
+        let tool_length = |w: &[robotc_core::trajectory::TrajectoryPoint]| {
+            if fingers { 0.0 } else { (tool(&w[1].positions) - tool(&w[0].positions)).norm() }
+        };
+        SegmentReport {
+            kind: segment.kind.to_string(),
+            goal: segment.goal,
+            seconds: segment.trajectory.duration(),
+            joint_length: knots.windows(2).map(|w| norm(&w[0].positions, &w[1].positions)).sum(),
+            tool_length: knots.windows(2).map(tool_length).sum(),
+        }
+    };
+    plan.segments.iter().map(report).collect()
+}
+
+/// Refuses outputs that could not be written, before long work begins.
+fn check_outputs(args: &Run) -> Outcome {
+    for path in [&args.view, &args.glb, &args.trajectory, &args.report].into_iter().flatten() {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        if !folder.is_dir() {
+            return Err(Failure::Input(format!(
+                "{}: there is no folder {}",
+                path.display(),
+                folder.display()
+            )));
+        }
+    }
+    Ok(())
+}
