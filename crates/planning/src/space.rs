@@ -88,6 +88,16 @@ impl Space {
         self.axes.iter().map(draw).map(|(low, high)| rng.range(low, high)).collect()
     }
 
+    /// A state in a random direction at `distance` from `centre`, moved into the bounds.
+    pub fn sample_near(&self, centre: &[f64], distance: f64, rng: &mut Rng) -> Vec<f64> {
+        let direction: Vec<f64> = centre.iter().map(|_| rng.normal()).collect();
+        let norm = direction.iter().map(|d| d * d).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+        let along = |(axis, (c, d)): (&Axis, (&f64, &f64))| c + distance * d / (norm * axis.weight);
+        let mut q: Vec<f64> = self.axes.iter().zip(centre.iter().zip(&direction)).map(along).collect();
+        self.clamp(&mut q);
+        q
+    }
+
     /// The largest distance between two states.
     pub fn diameter(&self) -> f64 {
         let extent = |axis: &Axis| axis.weight * if axis.wraps { PI } else { axis.upper - axis.lower };
@@ -167,6 +177,8 @@ mod tests {
             let q = space.sample(&mut rng);
             assert!(space.contains(&q));
             assert!(space.distance(&q, &last) <= space.diameter() + 1e-12);
+            let near = space.sample_near(&q, 0.5, &mut rng);
+            assert!(space.contains(&near) && space.distance(&q, &near) <= 0.5 + 1e-12);
             last = q;
         }
     }

@@ -21,6 +21,9 @@ use tree::Tree;
 pub struct RrtOptions {
     /// Longest edge, as a fraction of the diameter of the space.
     pub step: f64,
+    /// Share of samples drawn near a random node of the growing forest, no farther than the longest edge, rather than
+    /// anywhere: they find the way out of cramped places, where long motions are all blocked.
+    pub local: f64,
     /// A goal is asked for every this many iterations, once the first is known.
     pub goal_period: u32,
     /// Iterations after which the search gives up.
@@ -31,7 +34,7 @@ pub struct RrtOptions {
 
 impl Default for RrtOptions {
     fn default() -> Self {
-        Self { step: 0.1, goal_period: 50, max_iterations: 20_000, max_goal_draws: 10_000 }
+        Self { step: 0.1, local: 0.3, goal_period: 50, max_iterations: 20_000, max_goal_draws: 10_000 }
     }
 }
 
@@ -223,13 +226,15 @@ fn search<C: EdgeChecker + ?Sized>(
         budget.check().map_err(RrtFailureReason::Interrupted)?;
         growth.statistics.iterations += 1;
 
-        let Some(sample) = growth.sample(rng) else { continue };
         let grow_start = from_start.len() <= from_goals.len();
         let (grown, other) = if grow_start {
             (&mut *from_start, &mut *from_goals)
         } else {
             (&mut *from_goals, &mut *from_start)
         };
+        let local = rng.unit() < options.local;
+        let centre = local.then(|| grown.state(rng.below(grown.len())).to_vec());
+        let Some(sample) = growth.sample(centre.as_deref(), rng) else { continue };
         let near = grown.nearest(growth.checker.space(), &sample);
         let node = match growth.extend(grown, near, &sample) {
             Reach::There(node) | Reach::Short(node) => node,
@@ -253,9 +258,13 @@ struct Growth<'a, C: ?Sized> {
 }
 
 impl<C: EdgeChecker + ?Sized> Growth<'_, C> {
-    /// A state on the constraint; `None` when the projection failed.
-    fn sample(&self, rng: &mut Rng) -> Option<Vec<f64>> {
-        let mut q = self.checker.space().sample(rng);
+    /// A state on the constraint, within a step of `centre` if there is one; `None` when the projection failed.
+    fn sample(&self, centre: Option<&[f64]>, rng: &mut Rng) -> Option<Vec<f64>> {
+        let space = self.checker.space();
+        let mut q = match centre {
+            None => space.sample(rng),
+            Some(centre) => space.sample_near(centre, self.step * rng.unit(), rng),
+        };
         match self.constraint {
             Some(constraint) if !constraint.project(&mut q) => None,
             _ => Some(q),
