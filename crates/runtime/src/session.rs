@@ -15,7 +15,7 @@ use robotc_planning::grasp::GraspSet;
 use robotc_planning::manipulation::{
     Manipulation, ManipulationOptions, Observer, Plan, PlanFailure, Uncertified, certify, pick_and_place,
 };
-use robotc_planning::scene::{Scene, SceneBody};
+use robotc_planning::scene::Scene;
 use robotc_planning::{ArmError, ArmModel, Budget};
 use thiserror::Error;
 
@@ -59,29 +59,19 @@ impl Session {
         let robot = task.robot.clone();
         let kinematics = Kinematics::new(robot.model.clone());
 
-        let mut links: TypedVec<LinkIdx, _> =
-            robot.model.links().iter().map(|_| Default::default()).collect();
+        let mut links: TypedVec<LinkIdx, Arc<_>> =
+            robot.model.links().iter().map(|_| Arc::default()).collect();
         for link in robot.model.links().indices() {
             if !robot.model.links()[link].collisions.is_empty() {
-                links[link] = (*knowledge.load::<ConvexParts>(&OfShape::Link(link))?).clone();
+                links[link] = knowledge.load::<ConvexParts>(&OfShape::Link(link))?;
             }
         }
+        // In the order of the world's bodies.
+        let objects = (0..task.objects.len()).map(OfShape::Object);
+        let shapes = objects.chain((0..task.obstacles.len()).map(OfShape::Obstacle));
+        let bodies = shapes.map(|shape| knowledge.load::<ConvexParts>(&shape)).collect::<Result<_, _>>()?;
         let pairs = knowledge.load::<SelfCollisionPairs>(&OfRobot)?.tested().collect();
-        let mut bodies = Vec::new();
-        for (i, object) in task.objects.iter().enumerate() {
-            let parts = knowledge.load::<ConvexParts>(&OfShape::Object(i))?;
-            bodies.push(SceneBody {
-                name: object.name.clone(),
-                parts,
-                world_from_body: object.world_from_object,
-            });
-        }
-        for (i, obstacle) in task.obstacles.iter().enumerate() {
-            let parts = knowledge.load::<ConvexParts>(&OfShape::Obstacle(i))?;
-            let world_from_body = obstacle.world_from_obstacle;
-            bodies.push(SceneBody { name: obstacle.name.clone(), parts, world_from_body });
-        }
-        let scene = Scene::new(&kinematics, task.world_from_robot, &links, pairs, bodies);
+        let scene = Scene::new(&World::of_task(&task, kinematics.clone()), &links, &bodies, pairs);
 
         let arm = load_arm(knowledge, &task, &kinematics)?;
         let mut grasps = Vec::new();

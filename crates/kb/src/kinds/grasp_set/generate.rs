@@ -39,7 +39,7 @@ pub(super) struct Counts {
     pub(super) no_touch: usize,
     /// Fewer than two fingers touched.
     pub(super) few_fingers: usize,
-    /// The palm touched after the hand was centred.
+    /// The palm or the back of a finger touched after the hand was centred.
     pub(super) palm: usize,
     /// The contacts do not close, or too weakly.
     pub(super) no_closure: usize,
@@ -133,7 +133,7 @@ impl<'a> Generator<'a> {
                 Trial::NoClosure => counts.no_closure += 1,
                 Trial::Miss(Miss::NoTouch) => counts.no_touch += 1,
                 Trial::Miss(Miss::FewFingers) => counts.few_fingers += 1,
-                Trial::Miss(Miss::PalmTouches) => counts.palm += 1,
+                Trial::Miss(Miss::PalmTouches | Miss::Inside) => counts.palm += 1,
             }
         }
         let mut grasps = distinct(grasps);

@@ -44,6 +44,8 @@ pub(super) enum Miss {
     FewFingers,
     /// After centring, something other than a finger touches.
     PalmTouches,
+    /// After centring, a finger is inside of the object.
+    Inside,
 }
 
 /// The object to be grasped.
@@ -149,12 +151,15 @@ fn close_fingers(hand: &Hand, target: &Target, tool: Pose, open: &[f64]) -> Resu
         return Err(Miss::PalmTouches);
     }
     let object_from_links: Vec<Pose> = palm_from_links.iter().map(|p| object_from_palm * p).collect();
-    let touching = (0..hand.links.len())
-        .filter(|&i| {
-            hand.links[i].is_finger
-                && link_gap(hand, i, &object_from_links[i], target, 4.0 * TOUCH) < 3.0 * TOUCH
-        })
-        .count();
+    let mut touching = 0;
+    for i in (0..hand.links.len()).filter(|&i| hand.links[i].is_finger) {
+        let free = link_gap(hand, i, &object_from_links[i], target, 4.0 * TOUCH);
+        // Centring may have pushed a finger into what was behind it.
+        if free <= 0.0 {
+            return Err(Miss::Inside);
+        }
+        touching += usize::from(free < 3.0 * TOUCH);
+    }
     if touching < 2 {
         return Err(Miss::FewFingers);
     }

@@ -1,0 +1,35 @@
+"""robotc: from robot and task specifications to knowledge bases, inverse kinematics and plans.
+
+    import robotc
+    task = robotc.Task("specs/tasks/mug_to_shelf.task.toml")
+    plan = robotc.KnowledgeBase(task, store=".robotc").session().plan(seed=1)
+    plan.execute(view="out.html")
+
+Lengths are metres and angles radians; poses are 4 x 4 matrices. Long calls release the interpreter lock and stop at Ctrl-C.
+"""
+
+from ._robotc import (
+    CompileError,
+    InverseKinematics,
+    KnowledgeBase,
+    Plan,
+    PlanError,
+    Robot,
+    Session,
+    SpecificationError,
+    Task,
+    __version__,
+)
+
+__all__ = [
+    "CompileError",
+    "InverseKinematics",
+    "KnowledgeBase",
+    "Plan",
+    "PlanError",
+    "Robot",
+    "Session",
+    "SpecificationError",
+    "Task",
+    "__version__",
+]

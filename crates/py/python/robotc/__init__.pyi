@@ -1,0 +1,150 @@
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Path = str | PathLike[str]
+
+__version__: str
+
+class Diagnostic(TypedDict):
+    """A finding about a specification."""
+
+    severity: str
+    code: str
+    message: str
+    expected: str | None
+    hint: str | None
+    path: str | None
+    line: int | None
+    column: int | None
+
+class Artefact(TypedDict):
+    """An artefact of a knowledge base."""
+
+    kind: str
+    subject: str
+    key: str | None
+    content: str | None
+
+class Segment(TypedDict):
+    """A motion of a plan; `kind` is preshape, reach, approach, grasp, lift, carry, lower, release or retreat."""
+
+    kind: str
+    object: str
+    duration: float
+
+class SpecificationError(ValueError):
+    """A specification cannot be used; `diagnostics` holds everything that was found."""
+
+    diagnostics: list[Diagnostic]
+
+class CompileError(Exception):
+    """An artefact could not be computed."""
+
+class PlanError(Exception):
+    """The planner found no plan; the message says why, with counts."""
+
+class Robot:
+    """A checked robot specification with its kinematics."""
+
+    def __init__(self, path: Path) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def warnings(self) -> list[Diagnostic]: ...
+    @property
+    def joint_names(self) -> list[str]:
+        """Independently driven joints, in the order of joint vectors."""
+    @property
+    def link_names(self) -> list[str]: ...
+    @property
+    def arms(self) -> list[str]: ...
+    @property
+    def limits(self) -> Array:
+        """Lower and upper limit of each joint, shape (joints, 2); infinite for continuous joints."""
+    def fk(self, q: Array, link: str) -> Array:
+        """`root_from_link`, shape (4, 4)."""
+    def jacobian(self, q: Array, link: str, point: Sequence[float] = (0.0, 0.0, 0.0)) -> Array:
+        """Linear, then angular velocity of a point of the link in root axes, shape (6, joints)."""
+
+class Task:
+    """A checked task specification."""
+
+    def __init__(self, path: Path) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def warnings(self) -> list[Diagnostic]: ...
+    @property
+    def objects(self) -> list[str]: ...
+    @property
+    def obstacles(self) -> list[str]: ...
+
+class InverseKinematics:
+    """All joint vectors of an arm that reach a pose."""
+
+    @property
+    def joint_names(self) -> list[str]: ...
+    @property
+    def free_joints(self) -> list[str]:
+        """Joints whose value `solve` is given."""
+    def solve(self, pose: Array, free: Sequence[float] = ()) -> Array:
+        """Solutions for `base_from_tip`, shape (solutions, joints). Angles in (-pi, pi]; limits are not applied."""
+    def fk(self, joints: Sequence[float]) -> Array:
+        """`base_from_tip`, shape (4, 4)."""
+
+class KnowledgeBase:
+    """Everything that was compiled for a robot or a task."""
+
+    def __init__(
+        self,
+        subject: Robot | Task,
+        store: Path,
+        progress: Callable[[str, str, float], object] | None = None,
+    ) -> None: ...
+    @property
+    def built(self) -> int:
+        """Number of artefacts that were computed; the others were in the store."""
+    @property
+    def artefacts(self) -> list[Artefact]: ...
+    def inverse_kinematics(self, arm: str | None = None) -> InverseKinematics: ...
+    def session(self) -> Session: ...
+
+class Session:
+    """A task with its artefacts, ready to be planned."""
+
+    def plan(self, seed: int | None = None, time_limit: float = 30.0) -> Plan: ...
+
+class Plan:
+    """A certified plan with the motion of all joints."""
+
+    @property
+    def complete(self) -> bool: ...
+    @property
+    def skipped(self) -> list[str]:
+        """Why goals are left out; empty when the plan is complete."""
+    @property
+    def seconds(self) -> float:
+        """How long planning took."""
+    @property
+    def duration(self) -> float:
+        """Seconds of motion."""
+    @property
+    def joint_names(self) -> list[str]: ...
+    @property
+    def times(self) -> Array: ...
+    @property
+    def positions(self) -> Array:
+        """Shape (times, joints)."""
+    @property
+    def velocities(self) -> Array: ...
+    @property
+    def accelerations(self) -> Array: ...
+    @property
+    def segments(self) -> list[Segment]: ...
+    def execute(self, view: Path | None = None, glb: Path | None = None) -> dict[str, Array]:
+        """Final pose of each object, after a kinematic simulation; writes a replay page or a binary glTF file."""

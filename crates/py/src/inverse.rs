@@ -1,0 +1,90 @@
+//! Inverse kinematics of an arm.
+
+use numpy::{PyArray2, PyReadonlyArray2};
+use pyo3::exceptions::{PyKeyError, PyValueError};
+use pyo3::prelude::*;
+use robotc_core::ik::{IkSolutions, InverseKinematics as _};
+use robotc_core::{Kinematics, SerialChain};
+use robotc_ikgen::Solver;
+use robotc_kb::Knowledge;
+use robotc_kb::kinds::IkSolver;
+use robotc_kb::project::OfArm;
+
+use crate::arrays;
+use crate::errors::CompileError;
+
+/// All joint vectors of an arm that reach a pose.
+#[pyclass(frozen, module = "robotc")]
+pub(crate) struct InverseKinematics {
+    chain: SerialChain,
+    solver: Solver,
+}
+
+impl InverseKinematics {
+    pub(crate) fn load(knowledge: &Knowledge, arm: Option<&str>) -> PyResult<Self> {
+        let robot = knowledge.graph().project().robot();
+        let index = match arm {
+            None => 0,
+            Some(name) => robot
+                .arms
+                .iter()
+                .position(|a| a.name == name)
+                .ok_or_else(|| PyKeyError::new_err(format!("the robot has no arm {name}")))?,
+        };
+        let failed = |e: &dyn std::fmt::Display| CompileError::new_err(e.to_string());
+        let arm = &robot.arms[index];
+        let kinematics = Kinematics::new(robot.model.clone());
+        let chain = SerialChain::between(&kinematics, arm.base, arm.tip).map_err(|e| failed(&e))?;
+        let program = knowledge.load::<IkSolver>(&OfArm(index)).map_err(|e| failed(&e))?;
+        let solver = Solver::new((*program).clone(), &chain).map_err(|e| failed(&e))?;
+        Ok(Self { chain, solver })
+    }
+}
+
+#[pymethods]
+impl InverseKinematics {
+    #[getter]
+    fn joint_names(&self) -> Vec<String> {
+        self.chain.variables.iter().map(|v| v.name.clone()).collect()
+    }
+
+    #[getter]
+    fn free_joints(&self) -> Vec<String> {
+        let free = self.solver.free_variables().iter();
+        free.map(|&i| self.chain.variables[i].name.clone()).collect()
+    }
+
+    /// A row for each solution. `pose` is `base_from_tip`, a 4 x 4 matrix; `free` the values of the free joints.
+    #[pyo3(signature = (pose, free = Vec::new()))]
+    fn solve<'py>(
+        &self,
+        py: Python<'py>,
+        pose: PyReadonlyArray2<'py, f64>,
+        free: Vec<f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let expected = self.solver.free_variables().len();
+        if free.len() != expected {
+            let names = self.free_joints().join(", ");
+            return Err(PyValueError::new_err(format!(
+                "expected {expected} free values ({names}), got {}",
+                free.len()
+            )));
+        }
+        let mut solutions = IkSolutions::new();
+        self.solver.solve(&arrays::pose(&pose)?, &free, &mut solutions);
+        let rows: Vec<Vec<f64>> = solutions.iter().map(<[f64]>::to_vec).collect();
+        Ok(arrays::rows(py, &rows, self.chain.variables.len()))
+    }
+
+    /// `base_from_tip` at these joint values, as a 4 x 4 matrix.
+    fn fk<'py>(&self, py: Python<'py>, joints: Vec<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        if joints.len() != self.chain.variables.len() {
+            let expected = self.chain.variables.len();
+            return Err(PyValueError::new_err(format!(
+                "expected {expected} joint values, got {}",
+                joints.len()
+            )));
+        }
+        Ok(arrays::matrix(py, &self.chain.forward(&joints)))
+    }
+}
