@@ -134,7 +134,7 @@ fn binary(operator: Operator, left: &Value, right: &Value) -> Result<Value, Stri
             Operator::Subtract => a.checked_sub(*b),
             Operator::Multiply => a.checked_mul(*b),
             Operator::FloorDivide => {
-                a.checked_rem_euclid(*b).and_then(|_| Some((*a as f64 / *b as f64).floor() as i64))
+                a.checked_div(*b).map(|d| if a % b != 0 && (*a < 0) != (*b < 0) { d - 1 } else { d })
             }
             Operator::Remainder => {
                 a.checked_rem(*b).map(|r| if r != 0 && (r < 0) != (*b < 0) { r + b } else { r })
