@@ -1,4 +1,4 @@
-//! `cargo xtask kill [TRIALS]`: a compilation is killed at random moments and must always be resumable.
+//! `cargo xtask kill [TRIALS] [PROGRAM]`: a compilation is killed at random moments and must always be resumable.
 //!
 //! Each trial starts `robotc compile` on an empty knowledge base, kills it outright (no signal handler runs) after a random
 //! time, and compiles again, over and over, until one run gets to the end. After every kill the store must verify, and in the
@@ -13,14 +13,19 @@ use anyhow::{Context, bail, ensure};
 /// Trials when no number is given: what the project promises.
 const TRIALS: u32 = 100;
 
-/// Compiled in every trial: a robot with some work for every kind.
-const SPECIFICATION: &str = "specs/tasks/parts_to_bin.task.toml";
+/// Compiled in every trial: work for most kinds, in two seconds.
+const SPECIFICATION: &str = "specs/robots/ur5e.robot.toml";
 
 /// Runs the trials and prints a table of them.
 pub(crate) fn run(args: &[String]) -> anyhow::Result<()> {
     let trials: u32 = args.first().map_or(Ok(TRIALS), |n| n.parse()).context("the number of trials")?;
-    crate::test::execute(&["cargo", "build", "--release", "--locked", "-p", "robotc"])?;
-    let program = crate::test::root().join("target/release/robotc");
+    let program = match args.get(1) {
+        Some(program) => std::path::absolute(program)?,
+        None => {
+            crate::test::execute(&["cargo", "build", "--release", "--locked", "-p", "robotc"])?;
+            crate::test::root().join("target/release/robotc")
+        }
+    };
     let specification = crate::test::root().join(SPECIFICATION);
     let folder = tempfile::tempdir()?;
 

@@ -12,7 +12,7 @@ type Task = (&'static str, &'static str, fn(&[String]) -> anyhow::Result<()>);
 
 const TASKS: &[Task] = &[
     ("assets", "write the geometry in specs/, or --check it", assets::run),
-    ("kill", "compile, killed at random moments, [TRIALS]", kill::run),
+    ("kill", "kill compilations at random moments: [TRIALS] [PROGRAM]", kill::run),
     ("test", "all tests: format, lints, Rust, Python", test::run),
     ("tidy", "architecture invariants that text can show", tidy::run),
 ];

@@ -8,7 +8,7 @@ use robotc_core::model::{
     Configuration, DynamicLimits, Geometry, Inertial, JointMotion, Origin, RobotBuilder, Shape,
 };
 use robotc_core::robot::{Base, Preshape};
-use robotc_core::spec::{RobotSpec, TaskSpec};
+use robotc_core::spec::{ParameterValue, RobotSpec, TaskSpec};
 use robotc_core::task::{Destination, Goal, Object, Obstacle};
 use robotc_core::{Arm, Gripper, Pose, Robot, Task};
 use robotc_kb::{Given, Project};
@@ -126,8 +126,20 @@ pub(crate) fn spec() -> Spec {
             geometry: Arc::new(vec![cuboid([1.0, 1.0, 0.04], [0.0; 3])]),
             world_from_obstacle: Pose::translation(0.6, 0.0, 0.2),
         },
-        given: Given::default(),
+        given: coarse(),
     }
+}
+
+/// Parameters that make maps and grasp sets small, so that tests are quick.
+fn coarse() -> Given {
+    let mut given = Given::default();
+    given.set("reachability", "step", ParameterValue::Number(0.2));
+    given.set("reachability", "free_samples", ParameterValue::Integer(2));
+    given.set("grasp_set", "spacing", ParameterValue::Number(0.03));
+    given.set("grasp_set", "directions", ParameterValue::Integer(1));
+    given.set("self_collision_pairs", "samples", ParameterValue::Integer(200));
+    given.set("self_collision_pairs", "boxes", ParameterValue::Integer(200));
+    given
 }
 
 impl Spec {
