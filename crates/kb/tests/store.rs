@@ -47,7 +47,7 @@ fn damage_is_found_reported_and_mended() {
     let lock = LockFile::of(&before.knowledge);
     let count = before.outcomes.len();
     drop(before);
-    damage_inline_contents(folder.path());
+    damage_everything(folder.path());
 
     let store = open(folder.path());
     let found = store.verify().expect("the store opens");
@@ -63,8 +63,16 @@ fn damage_is_found_reported_and_mended() {
     assert!(store.verify().expect("the store opens").findings.is_empty());
 }
 
-/// Flips a bit of every content in the database, behind the store's back.
-fn damage_inline_contents(folder: &Path) {
+/// Flips a bit of every content, in the database and in files, behind the store's back.
+fn damage_everything(folder: &Path) {
+    for shelf in std::fs::read_dir(folder.join("blobs")).expect("a folder") {
+        for file in std::fs::read_dir(shelf.expect("an entry").path()).expect("a folder") {
+            let path = file.expect("an entry").path();
+            let mut bytes = std::fs::read(&path).expect("a file");
+            bytes[0] ^= 1;
+            std::fs::write(&path, bytes).expect("a file");
+        }
+    }
     let database = rusqlite::Connection::open(folder.join("robotc.db")).expect("the database");
     let rows: Vec<(Vec<u8>, Vec<u8>)> = database
         .prepare("SELECT content, bytes FROM blob WHERE bytes IS NOT NULL")
