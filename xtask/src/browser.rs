@@ -17,7 +17,9 @@ pub(crate) fn prepare() {
     }
     let may_install = Path::new("/usr/bin/apt-get").exists() && is_root();
     if !may_install {
-        println!("browser: none found and none may be installed here; the page test will say that it was skipped");
+        println!(
+            "browser: none found and none may be installed here; the page test will say that it was skipped"
+        );
         return;
     }
     println!("browser: installing the system's chromium package");

@@ -1,7 +1,9 @@
 //! Development tasks: `cargo xtask NAME`. One file per task, one line each in [`TASKS`].
 
 mod assets;
+mod browser;
 mod kill;
+mod python;
 mod test;
 mod tidy;
 
@@ -13,6 +15,7 @@ type Task = (&'static str, &'static str, fn(&[String]) -> anyhow::Result<()>);
 const TASKS: &[Task] = &[
     ("assets", "write the geometry in specs/, or --check it", assets::run),
     ("kill", "kill compilations at random moments: [TRIALS] [PROGRAM]", kill::run),
+    ("python", "build the Python wheel and run its tests, [ARGUMENTS OF PYTEST]", python::run),
     ("test", "all tests: format, lints, Rust, Python", test::run),
     ("tidy", "architecture invariants that text can show", tidy::run),
 ];

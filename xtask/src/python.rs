@@ -18,7 +18,15 @@ pub(crate) fn run(args: &[String]) -> anyhow::Result<()> {
     }
     call(
         Command::new(environment.join("bin").join("maturin"))
-            .args(["build", "--locked", "--manifest-path", "crates/py/Cargo.toml", "--profile", "dev", "--out"])
+            .args([
+                "build",
+                "--locked",
+                "--manifest-path",
+                "crates/py/Cargo.toml",
+                "--profile",
+                "dev",
+                "--out",
+            ])
             .arg(&wheels)
             .env("VIRTUAL_ENV", &environment),
     )?;
@@ -28,7 +36,9 @@ pub(crate) fn run(args: &[String]) -> anyhow::Result<()> {
         .find(|path| path.extension().is_some_and(|e| e == "whl"))
         .context("maturin made no wheel")?;
     call(
-        Command::new(&python).args(["-m", "pip", "install", "--quiet", "--force-reinstall", "--no-deps"]).arg(wheel),
+        Command::new(&python)
+            .args(["-m", "pip", "install", "--quiet", "--force-reinstall", "--no-deps"])
+            .arg(wheel),
     )?;
     call(Command::new(&python).args(["-m", "pytest", "--quiet", "crates/py/tests"]).args(args))
 }

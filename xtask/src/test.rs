@@ -15,6 +15,7 @@ pub(crate) fn run(_args: &[String]) -> anyhow::Result<()> {
     ];
     let mut times = Vec::new();
     crate::tidy::run(&[])?;
+    crate::browser::prepare();
     for (name, command) in steps {
         let start = Instant::now();
         println!("== {name}: {}", command.join(" "));

@@ -1,7 +1,7 @@
 //! The solution program of an arm's inverse kinematics.
 
 use robotc_core::DofIdx;
-use robotc_core::model::{ChainError, SerialChain};
+use robotc_core::model::ChainError;
 use robotc_ikgen::Program;
 
 use crate::graph::{PlanError, Planner};
@@ -88,16 +88,10 @@ impl Kind for IkSolver {
     }
 }
 
-/// The chain of an arm as its solver is made for.
-pub(crate) fn chain(mechanism: &Mechanism) -> Result<SerialChain, ChainError> {
-    let kinematics = robotc_core::Kinematics::new(mechanism.model().clone());
-    SerialChain::between(&kinematics, mechanism.model().root(), mechanism.tip())
-}
-
 #[cfg(feature = "build")]
 mod build {
     use robotc_core::ik::{IkSolutions, InverseKinematics as _};
-    use robotc_core::{Configuration, Kinematics};
+    use robotc_core::{Configuration, Kinematics, SerialChain};
     use robotc_ikgen::{Options, Solver};
 
     use super::*;
@@ -167,5 +161,11 @@ mod build {
             }
             Ok(())
         }
+    }
+
+    /// The chain of an arm as its solver is made for.
+    fn chain(mechanism: &Mechanism) -> Result<SerialChain, ChainError> {
+        let kinematics = Kinematics::new(mechanism.model().clone());
+        SerialChain::between(&kinematics, mechanism.model().root(), mechanism.tip())
     }
 }

@@ -2,7 +2,6 @@
 
 use robotc_core::LinkIdx;
 use robotc_core::ids::Idx;
-use robotc_core::model::RobotModel;
 use serde::{Deserialize, Serialize};
 
 use super::ConvexParts;
@@ -144,29 +143,10 @@ impl Kind for SelfCollisionPairs {
     }
 }
 
-/// Whether nothing but links without shapes is between two rigid bodies of a robot.
-fn adjacent(model: &RobotModel, a: LinkIdx, b: LinkIdx, has_shape: &[bool]) -> bool {
-    let (top_a, top_b) = (top(model, a), top(model, b));
-    let path = |from: LinkIdx, to: LinkIdx| -> Option<Vec<LinkIdx>> {
-        let joints = model.joints_between(to, from)?;
-        Some(joints.iter().map(|&j| top(model, model.joints()[j].parent)).collect())
-    };
-    let Some(between) = path(top_a, top_b).or_else(|| path(top_b, top_a)) else { return false };
-    let shaped = |body: LinkIdx| model.rigid_group(body).iter().any(|&l| has_shape[l.index()]);
-    between.into_iter().filter(|&body| body != top_a && body != top_b).all(|body| !shaped(body))
-}
-
-/// The highest link of the rigid body that a link belongs to.
-fn top(model: &RobotModel, link: LinkIdx) -> LinkIdx {
-    let group = model.rigid_group(link);
-    let is_top = |&&l: &&LinkIdx| model.parent(l).is_none_or(|parent| !group.contains(&parent));
-    *group.iter().find(is_top).expect("a rigid body has a highest link")
-}
-
 #[cfg(feature = "build")]
 mod build {
     use robotc_core::geom::{self, ConvexParts as Parts3};
-    use robotc_core::model::{Configuration, Dof, JointMotion, Kinematics, LinkPoses};
+    use robotc_core::model::{Configuration, Dof, JointMotion, Kinematics, LinkPoses, RobotModel};
     use robotc_core::rng::Rng;
     use robotc_core::{DofIdx, Pose};
     use std::sync::Arc;
@@ -223,6 +203,25 @@ mod build {
             }
             Ok(())
         }
+    }
+
+    /// Whether nothing but links without shapes is between two rigid bodies of a robot.
+    fn adjacent(model: &RobotModel, a: LinkIdx, b: LinkIdx, has_shape: &[bool]) -> bool {
+        let (top_a, top_b) = (top(model, a), top(model, b));
+        let path = |from: LinkIdx, to: LinkIdx| -> Option<Vec<LinkIdx>> {
+            let joints = model.joints_between(to, from)?;
+            Some(joints.iter().map(|&j| top(model, model.joints()[j].parent)).collect())
+        };
+        let Some(between) = path(top_a, top_b).or_else(|| path(top_b, top_a)) else { return false };
+        let shaped = |body: LinkIdx| model.rigid_group(body).iter().any(|&l| has_shape[l.index()]);
+        between.into_iter().filter(|&body| body != top_a && body != top_b).all(|body| !shaped(body))
+    }
+
+    /// The highest link of the rigid body that a link belongs to.
+    fn top(model: &RobotModel, link: LinkIdx) -> LinkIdx {
+        let group = model.rigid_group(link);
+        let is_top = |&&l: &&LinkIdx| model.parent(l).is_none_or(|parent| !group.contains(&parent));
+        *group.iter().find(is_top).expect("a rigid body has a highest link")
     }
 
     fn random(model: &RobotModel, rng: &mut Rng) -> Configuration {

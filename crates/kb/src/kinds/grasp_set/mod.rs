@@ -35,6 +35,7 @@ use crate::record::Parts;
 pub struct GraspSet;
 
 /// What a grasp set is computed from.
+#[cfg_attr(not(feature = "build"), expect(dead_code, reason = "artefacts that only generators load"))]
 pub struct Inputs {
     hand: Mechanism,
     gripper: Gripper,

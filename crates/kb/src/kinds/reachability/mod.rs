@@ -39,6 +39,7 @@ crate::parameters! {
 }
 
 /// What a map is computed from.
+#[cfg_attr(not(feature = "build"), expect(dead_code, reason = "artefacts that only generators load"))]
 pub struct Inputs {
     mechanism: Mechanism,
     base: LinkIdx,
