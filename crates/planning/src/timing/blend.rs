@@ -43,6 +43,10 @@ impl Interval {
     }
 }
 
+/// A blend takes no more than this share of a leg. Two blends then leave a straight piece between them that is not so
+/// short that rounding errors, divided by its squared duration, look like accelerations.
+const LEG_SHARE: f64 = 0.49;
+
 /// Pieces of a path between its stops: each section is smooth, between sections the motion rests.
 ///
 /// `path` is unwrapped, without repeated states.
@@ -61,7 +65,7 @@ pub(super) fn round_corners<C: EdgeChecker + ?Sized>(
     for (i, (direction, length)) in legs.iter().enumerate() {
         let corner = &path[i + 1];
         let half = legs.get(i + 1).and_then(|(next, next_length)| {
-            let limit = longest.min(0.5 * length).min(0.5 * next_length);
+            let limit = longest.min(LEG_SHARE * length).min(LEG_SHARE * next_length);
             free_blend(checker, corner, direction, next, limit, 1e-3 * longest)
         });
         let cut_after = half.unwrap_or(0.0);
@@ -86,12 +90,13 @@ pub(super) fn round_corners<C: EdgeChecker + ?Sized>(
     sections
 }
 
-/// Cuts pieces into about `count` intervals, at least four for each piece.
+/// Cuts pieces into about `count` intervals, at least four for each blend.
 pub(super) fn subdivide(section: &[Piece], count: u32) -> Vec<Interval> {
     let total: f64 = section.iter().map(|p| p.length).sum();
     let mut intervals = Vec::new();
     for piece in section {
-        let n = (f64::from(count) * piece.length / total).ceil().max(4.0);
+        let least = if piece.curvature.iter().all(|c| *c == 0.0) { 1.0 } else { 4.0 };
+        let n = (f64::from(count) * piece.length / total).ceil().max(least);
         let length = piece.length / n;
         for k in 0..n as usize {
             let s = k as f64 * length;

@@ -10,6 +10,7 @@ mod timed;
 pub use timed::TimedPath;
 
 use crate::edge::EdgeChecker;
+use crate::space::Space;
 
 /// How fast each coordinate may go.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,7 +48,7 @@ pub fn time_path<C: EdgeChecker + ?Sized>(
 ) -> TimedPath {
     let mut path = path.to_vec();
     checker.space().unwrap_path(&mut path);
-    path.dedup_by(|b, a| checker.space().distance(a, b) < 1e-12);
+    drop_repeated(checker.space(), &mut path);
     let Some(first) = path.first() else { return TimedPath::default() };
     let mut timed = TimedPath::resting_at(first);
     for section in blend::round_corners(checker, &path, options.blend) {
@@ -56,6 +57,22 @@ pub fn time_path<C: EdgeChecker + ?Sized>(
     }
     timed.slow_down_to(limits);
     timed
+}
+
+/// States nearer to their neighbours than this fraction of the diameter of the space say nothing about the path.
+const REPEATED: f64 = 1e-6;
+
+/// Leaves out states next to the one before or to the end; both ends stay.
+fn drop_repeated(space: &Space, path: &mut Vec<Vec<f64>>) {
+    let least = REPEATED * space.diameter();
+    let Some(end) = path.pop() else { return };
+    path.dedup_by(|b, a| space.distance(a, b) <= least);
+    while path.len() > 1 && space.distance(&path[path.len() - 1], &end) <= least {
+        path.pop();
+    }
+    if path.first() != Some(&end) || path.len() > 1 {
+        path.push(end);
+    }
 }
 
 #[cfg(test)]
@@ -124,6 +141,25 @@ mod tests {
                 .map(|k| k.velocities[0].hypot(k.velocities[1]))
                 .fold(f64::INFINITY, f64::min);
             assert_eq!(slowest < 1e-6, stops, "{slowest}");
+        }
+    }
+
+    #[test]
+    fn nearly_equal_legs_and_nearly_equal_states_keep_the_limits() {
+        let limits = limits([1.0; 2], [2.0; 2]);
+        for k in 0..12 {
+            let tiny = 10.0_f64.powi(-k);
+            let path = vec![
+                vec![1.0, 1.0],
+                vec![1.5, 1.0],
+                vec![2.0 + tiny, 1.1],
+                vec![2.0 + tiny, 1.1 + tiny],
+                vec![2.5 + tiny, 1.3],
+                vec![2.5 + tiny, 1.8 + 2.0 * tiny],
+            ];
+            let timed = time_path(&mut open(), &path, &limits, &TimingOptions::default());
+            assert!(timed.limit_use(&limits) <= 1.0 + 1e-9, "{tiny}: {}", timed.limit_use(&limits));
+            assert!(timed.duration() < 5.0 + 5.0 * tiny, "{tiny}: {}", timed.duration());
         }
     }
 
