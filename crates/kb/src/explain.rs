@@ -157,3 +157,63 @@ fn fate(
         Err(error) => Err(error),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Source;
+
+    fn part(source: Source, role: &str, name: &str, digest: u8) -> Part {
+        let shown = (source == Source::Parameter).then(|| format!("0.{digest}"));
+        Part { source, role: role.into(), name: name.into(), shown, digest: [digest; 32] }
+    }
+
+    fn record() -> KeyRecord {
+        KeyRecord {
+            kind: "grasp_set".into(),
+            format: 1,
+            algorithm: 2,
+            target: None,
+            parts: vec![
+                part(Source::Specification, "limits", "joint_3", 1),
+                part(Source::Parameter, "friction", "", 4),
+                part(Source::Artefact, "convex_parts", "robot/link", 5),
+            ],
+        }
+    }
+
+    #[test]
+    fn every_difference_changes_the_key_and_is_named() {
+        let cases: &[(fn(&mut KeyRecord), &[&str])] = &[
+            (|_| {}, &[]),
+            (|r| r.format = 2, &["format of the kind 1 -> 2"]),
+            (|r| r.algorithm = 3, &["algorithm of the kind 2 -> 3"]),
+            (|r| r.target = Some("x".into()), &["target any -> x"]),
+            (|r| r.parts[0].digest = [9; 32], &["limits of joint_3"]),
+            (|r| r.parts[1] = part(Source::Parameter, "friction", "", 5), &["parameter friction 0.4 -> 0.5"]),
+            (|r| r.parts[2].digest = [9; 32], &["convex_parts of robot/link"]),
+            (|r| drop(r.parts.remove(0)), &["limits of joint_3 removed"]),
+            (
+                |r| r.parts.push(part(Source::Specification, "limits", "joint_4", 7)),
+                &["limits of joint_4 added"],
+            ),
+            (|r| r.parts.swap(0, 1), &["order of the parts"]),
+        ];
+        for (edit, expected) in cases {
+            let mut now = record();
+            edit(&mut now);
+            let found: Vec<String> = changes(&record(), &now).iter().map(Change::to_string).collect();
+            assert_eq!(found, *expected);
+            assert_eq!(record().key() == now.key(), expected.is_empty());
+            assert_eq!(record().recipe() == now.recipe(), expected.is_empty());
+        }
+    }
+
+    #[test]
+    fn names_are_not_part_of_the_key() {
+        let mut renamed = record();
+        renamed.parts[0].name = "elbow".into();
+        assert_eq!(record().key(), renamed.key());
+        assert!(changes(&record(), &renamed).is_empty());
+    }
+}

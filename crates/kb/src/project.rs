@@ -189,17 +189,14 @@ impl Subject for OfShape {
     }
 
     fn label(&self, project: &Project) -> String {
-        let of_task = |name: &str| {
-            let task = project.task.as_ref().expect("objects and obstacles belong to a task");
-            format!("{}/{}", word(&task.name), word(name))
-        };
         match *self {
             Self::Link(link) => {
                 format!("{}/{}", robot_label(project), word(&project.robot.model.links()[link].name))
             }
             Self::Object(object) => OfObject(object).label(project),
             Self::Obstacle(obstacle) => {
-                of_task(&project.task.as_ref().map_or("", |task| &task.obstacles[obstacle].name))
+                let task = project.task.as_ref().expect("obstacles belong to a task");
+                format!("{}/{}", word(&task.name), word(&task.obstacles[obstacle].name))
             }
         }
     }

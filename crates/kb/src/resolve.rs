@@ -40,7 +40,7 @@ pub enum LoadError {
         /// The artefact.
         title: String,
         /// What is wrong.
-        error: StoreError,
+        error: Box<StoreError>,
     },
     /// Its bytes cannot be decoded, though they are what was stored.
     #[error("{title} cannot be loaded: {error}")]
@@ -144,8 +144,10 @@ impl Knowledge {
     fn decode(&self, node: NodeIdx) -> Result<Arc<dyn Any + Send + Sync>, LoadError> {
         let title = || self.graph.node(node).title();
         let known = self.known(node).ok_or_else(|| LoadError::NotBuilt(title()))?;
-        let bytes =
-            self.store.read(&known.content).map_err(|error| LoadError::Store { title: title(), error })?;
+        let bytes = self
+            .store
+            .read(&known.content)
+            .map_err(|error| LoadError::Store { title: title(), error: Box::new(error) })?;
         let decoded = self.graph.node(node).kind.decode(&bytes);
         decoded.map_err(|error| LoadError::Decode { title: title(), error })
     }

@@ -85,8 +85,8 @@ const EDITS: &[Edit] = &[
     Edit {
         name: "collision shape that gives the same convex parts",
         apply: |s| {
-            let moved = |g: &Geometry| Geometry { shape: mesh_of_box([0.07, 0.07, 0.2]), ..g.clone() };
-            s.links[3].collision = moved(&s.links[3].collision);
+            let collision = &mut s.links[3].collision;
+            *collision = Geometry { shape: mesh_of_box([0.07, 0.07, 0.2]), ..collision.clone() };
         },
         rebuilt: &["convex_parts arm/fore"],
         because: "changed: shape of arm/fore",
