@@ -7,13 +7,16 @@ use nalgebra::{Matrix4, Point3, Rotation3, Unit, Vector3};
 use super::repair::RawMesh;
 use super::{MOST_FACES, MeshError, UpAxis};
 use crate::diag::{Severity, Sources};
-use crate::xml::{self, Element};
+use crate::xml::{self, Element, Node};
 
 /// Deepest nesting of nodes, through references too: they may go round in circles.
 const MOST_NESTED: usize = 64;
 
 /// Most nodes of one scene: references to references multiply.
 const MOST_NODES: usize = 100_000;
+
+/// Most characters of number lists, counted once for each instance.
+const MOST_READ: usize = 1 << 30;
 
 pub(super) fn read(bytes: &[u8]) -> Result<(RawMesh, Option<UpAxis>), MeshError> {
     let (text, _) = xml::decode(bytes);
@@ -41,7 +44,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<(RawMesh, Option<UpAxis>), MeshError>
         "Z_UP" => Some(UpAxis::Z),
         _ => None,
     });
-    let mut scene = Scene { ids: index(&root), mesh: RawMesh::default(), nodes: 0 };
+    let mut scene = Scene { ids: index(&root), mesh: RawMesh::default(), nodes: 0, read: 0 };
     let metres = Matrix4::new_scaling(unit);
     match visual_scene(&root, &scene.ids) {
         Some(visual_scene) => scene.node(visual_scene, &metres, 0)?,
@@ -87,6 +90,8 @@ struct Scene<'a> {
     ids: Ids<'a>,
     mesh: RawMesh,
     nodes: usize,
+    /// Characters of number lists read so far, each instance anew.
+    read: usize,
 }
 
 impl<'a> Scene<'a> {
@@ -133,6 +138,10 @@ impl<'a> Scene<'a> {
 
     fn geometry(&mut self, geometry: &'a Element, metres_from_node: &Matrix4<f64>) -> Result<(), MeshError> {
         let Some(mesh) = geometry.child("mesh") else { return Ok(()) };
+        self.read += characters(mesh);
+        if self.read > MOST_READ {
+            return Err(MeshError::TooLarge(MOST_FACES));
+        }
         let mirrors = metres_from_node.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
         // Primitives of one mesh share their vertices: each source is placed once.
         let mut placed: HashMap<*const Element, i64> = HashMap::new();
@@ -179,6 +188,15 @@ impl<'a> Scene<'a> {
         let position = vertices.named("input").find(|i| i.value("semantic") == Some("POSITION"))?;
         Some((offset.min(64), stride, target(&self.ids, position.value("source"))?))
     }
+}
+
+/// Characters of all number lists in an element.
+fn characters(element: &Element) -> usize {
+    let of = |node: &Node| match node {
+        Node::Text(text, _) => text.len(),
+        Node::Element(child) => characters(child),
+    };
+    element.children.iter().map(of).sum()
 }
 
 /// The points of a `<source>`, by its accessor.

@@ -14,6 +14,9 @@ use crate::xml::Element;
 /// Children of `<robot>` that this reader knows; others are extensions of some simulator and are skipped.
 const KNOWN: [&str; 6] = ["link", "joint", "material", "gazebo", "transmission", "ros2_control"];
 
+/// Most links, and most joints, of a robot: beyond that the checks, which compare each with each, would take minutes.
+const MOST_PARTS: usize = 10_000;
+
 /// The draft of a `<robot>` element, or `None` if it is not one.
 pub(super) fn read(root: &Element, found: &mut Diagnostics) -> Option<Draft> {
     if root.name != "robot" {
@@ -35,6 +38,11 @@ pub(super) fn read(root: &Element, found: &mut Diagnostics) -> Option<Draft> {
             "robot".to_owned()
         }
     };
+    if root.named("link").count().max(root.named("joint").count()) > MOST_PARTS {
+        let message = format!("the robot has more than {MOST_PARTS} links or joints");
+        found.push(Diagnostic::error("R0206", message).at(root.span, "this robot"));
+        return None;
+    }
     let colours = materials(root, found);
     let mut masses = Grouped::default();
     let mut draft = Draft { name, span: root.span, links: Vec::new(), joints: Vec::new() };

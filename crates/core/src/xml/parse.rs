@@ -1,5 +1,7 @@
 //! Text to tree.
 
+use std::collections::BTreeSet;
+
 use super::scan::{Scanner, is_xml_char, resolve_entities, starts_name};
 use super::{Attribute, Element, Node};
 use crate::diag::{Diagnostic, Diagnostics, FileId, Severity, Span};
@@ -19,6 +21,9 @@ impl Default for Limits {
     }
 }
 
+/// Most attributes of one element.
+const MOST_ATTRIBUTES: usize = 1000;
+
 /// Faults after which reading stops: a file with this many is not XML.
 const MOST_FAULTS: usize = 60;
 
@@ -30,7 +35,7 @@ pub(crate) fn parse(text: &str, file: FileId, limits: Limits) -> (Option<Element
         first: 0,
         open: Vec::new(),
         root: None,
-        prefixes: vec!["xml".to_owned(), "xmlns".to_owned()],
+        prefixes: ["xml".to_owned(), "xmlns".to_owned()].into(),
         found: Diagnostics::new(),
     };
     if text.len() > limits.bytes {
@@ -55,7 +60,7 @@ struct Parser<'a> {
     open: Vec<Element>,
     root: Option<Element>,
     /// Namespace prefixes that were declared, or were complained about already.
-    prefixes: Vec<String>,
+    prefixes: BTreeSet<String>,
     found: Diagnostics,
 }
 
@@ -238,6 +243,11 @@ impl Parser<'_> {
                 self.check_prefixes(&element);
                 return self.open.push(element);
             }
+            if element.attributes.len() > MOST_ATTRIBUTES {
+                let message = format!("`<{}>` has more than {MOST_ATTRIBUTES} attributes", element.name);
+                self.found.push(Diagnostic::error("R0206", message).at(span, "this element"));
+                self.scanner.advance(self.scanner.rest().len());
+            }
             if self.scanner.is_at_end() || self.scanner.rest().starts_with('<') {
                 if !told {
                     self.error(span, "this tag", format!("the tag `<{}` never ends with `>`", element.name));
@@ -305,14 +315,13 @@ impl Parser<'_> {
     fn check_prefixes(&mut self, element: &Element) {
         for attribute in &element.attributes {
             if let Some(prefix) = attribute.name.strip_prefix("xmlns:") {
-                self.prefixes.push(prefix.to_owned());
+                self.prefixes.insert(prefix.to_owned());
             }
         }
         let names = std::iter::once(&element.name).chain(element.attributes.iter().map(|a| &a.name));
         for name in names {
             let Some((prefix, _)) = name.split_once(':') else { continue };
-            if !self.prefixes.iter().any(|p| p == prefix) {
-                self.prefixes.push(prefix.to_owned());
+            if self.prefixes.insert(prefix.to_owned()) {
                 self.found.push(
                     Diagnostic::warning("R0203", format!("namespace prefix `{prefix}` is not declared"))
                         .at(element.span, "used here")

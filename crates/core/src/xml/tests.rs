@@ -71,6 +71,12 @@ fn what_has_one_meaning_is_repaired() {
 fn depth_length_and_number_of_faults_are_bounded() {
     assert!(read(&"<a>".repeat(100_000)).1.contains("error[R0206]"));
     assert!(read(&"<a>".repeat(20)).1.contains("error[R0206]: elements are nested more than 8 deep"));
+    let attributes: String = (0..2000).map(|i| format!(" a{i}=''")).collect();
+    let limits = Limits { depth: 8, bytes: 1 << 20 };
+    let mut sources = Sources::new();
+    let text = format!("<a{attributes}/>");
+    let (_, found) = parse(&text, sources.add("f", text.as_str()), limits);
+    assert!(found.to_plain_text(&sources).contains("error[R0206]: `<a>` has more than 1000 attributes"));
     let faults = read(&format!("<a>{}</a>", "&x;".repeat(3_000))).1.lines().count();
     assert_eq!(faults, 60);
 }
