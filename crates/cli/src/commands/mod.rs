@@ -4,6 +4,7 @@ mod check;
 mod compile;
 mod explain;
 mod graph;
+mod ik;
 mod init;
 mod kb;
 mod run;
@@ -19,6 +20,7 @@ pub(crate) enum Command {
     Compile(compile::Compile),
     Explain(explain::Explain),
     Graph(graph::Graph),
+    Ik(ik::Ik),
     Init(init::Init),
     Kb(kb::Kb),
     Run(run::Run),
@@ -32,6 +34,7 @@ pub(crate) fn run(command: Command) -> Outcome {
         Command::Compile(args) => compile::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Graph(args) => graph::run(&args),
+        Command::Ik(args) => ik::run(&args),
         Command::Init(args) => init::run(&args),
         Command::Kb(args) => kb::run(&args),
         Command::Run(args) => run::run(&args),

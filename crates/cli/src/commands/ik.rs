@@ -1,0 +1,168 @@
+//! `robotc ik`: inverse kinematics of one chain, without any specification.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+use robotc_core::urdf::{self, LoadOptions, MeshPolicy};
+use robotc_core::{Kinematics, LinkIdx, RobotModel, SerialChain, Sources, diag};
+use robotc_ikgen::backend::RustOptions;
+use robotc_ikgen::report::{ProofOptions, Report, prove};
+use robotc_ikgen::{Compiled, Options, compile};
+use robotc_kb::os::OsSystem;
+
+use super::compile::write_whole;
+use crate::output::{Failure, Outcome, print, say};
+
+/// Compile and prove the inverse kinematics of a chain of a URDF
+#[derive(Args)]
+#[command(after_help = "Examples:\n  robotc ik arm.urdf --base base_link --tip tool0\n  \
+    robotc ik arm.urdf --base base_link --tip tool0 -o arm_ik.rs --report arm_ik.json\n\n\
+    The source is one Rust file without dependencies that needs neither std nor memory allocation. It is written only \
+    when the solver passed its proof.")]
+pub(crate) struct Ik {
+    /// URDF or xacro file; its meshes are not needed
+    urdf: PathBuf,
+    /// Link where the chain starts
+    #[arg(long, value_name = "LINK")]
+    base: String,
+    /// Link where it ends
+    #[arg(long, value_name = "LINK")]
+    tip: String,
+    /// Joints whose values the caller gives, separated by commas [default: chosen when there are seven joints]
+    #[arg(long, value_name = "JOINT", value_delimiter = ',')]
+    free: Option<Vec<String>>,
+    /// File for the generated source: Rust, or the solution program when it ends in .ik
+    #[arg(short, long, value_name = "FILE.rs|FILE.ik")]
+    output: Option<PathBuf>,
+    /// Let the source use the square root of std: faster
+    #[arg(long)]
+    std: bool,
+    /// File for the proof
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+    /// Poses of each set of the proof
+    #[arg(long, value_name = "N", default_value_t = 1000)]
+    poses: usize,
+    /// Seed of the poses
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Largest difference between the described chain and an ideal one that may be solved in its place, metres and
+    /// radians; answers are always exact for the described chain
+    #[arg(long, value_name = "X", default_value_t = Options::default().tolerance)]
+    tolerance: f64,
+    /// Solve the chain exactly as described: the same as --tolerance 0
+    #[arg(long, conflicts_with = "tolerance")]
+    no_snap: bool,
+    /// Show what was tried
+    #[arg(long)]
+    explain: bool,
+}
+
+pub(crate) fn run(args: &Ik) -> Outcome {
+    let chain = chain(args)?;
+    if !args.tolerance.is_finite() || args.tolerance < 0.0 {
+        return Err(Failure::Input("--tolerance cannot be negative".into()));
+    }
+    let options = Options {
+        tolerance: if args.no_snap { 0.0 } else { args.tolerance },
+        free: args.free.as_ref().map(|names| free_variables(&chain, names)).transpose()?,
+        ..Options::default()
+    };
+    let clock = Instant::now();
+    let result = compile(&chain, &options);
+    let generation_s = clock.elapsed().as_secs_f64();
+    let (report, trace, compiled) = match &result {
+        Ok(compiled) => {
+            let proof = ProofOptions { poses: args.poses.max(1), seed: args.seed };
+            let now = || clock.elapsed().as_secs_f64();
+            (prove(compiled, generation_s, &proof, &now), &compiled.trace, Some(compiled))
+        }
+        Err(refusal) => (Report::refused(refusal, generation_s), &refusal.trace, None),
+    };
+    if args.explain {
+        trace.iter().for_each(|line| print(line));
+    }
+    if let Some(path) = &args.report {
+        let text = serde_json::to_string_pretty(&report).expect("plain values always have a JSON form");
+        write_whole(path, (text + "\n").as_bytes())?;
+    }
+    let Some(compiled) = compiled.filter(|_| report.emitted) else {
+        return Err(Failure::Input(format!("{}: {}", chain.name, report.reason)));
+    };
+    show(&chain, &report);
+    if let Some(path) = &args.output {
+        write_source(path, compiled, args.std)?;
+    }
+    Ok(())
+}
+
+fn chain(args: &Ik) -> Outcome<SerialChain> {
+    let mut sources = Sources::new();
+    let options = LoadOptions { meshes: MeshPolicy::Ignore, ..LoadOptions::default() };
+    let (model, found) = urdf::load(&OsSystem, &mut sources, &args.urdf, &options);
+    let model = crate::input::accept(model, &found, &sources)?;
+    let (base, tip) = (link(&model, &args.base)?, link(&model, &args.tip)?);
+    SerialChain::between(&Kinematics::new(model.into()), base, tip).map_err(|e| Failure::Input(e.to_string()))
+}
+
+fn link(model: &RobotModel, name: &str) -> Outcome<LinkIdx> {
+    let names = model.links().iter().map(|link| link.name.as_str());
+    model.link_named(name).ok_or_else(|| unknown("link", name, names))
+}
+
+fn free_variables(chain: &SerialChain, names: &[String]) -> Outcome<Vec<usize>> {
+    let mut free = Vec::new();
+    for name in names {
+        let known = chain.variables.iter().map(|v| v.name.as_str());
+        let position = chain.variables.iter().position(|v| v.name == *name);
+        free.push(position.ok_or_else(|| unknown("joint of the chain", name, known))?);
+    }
+    free.sort_unstable();
+    free.dedup();
+    Ok(free)
+}
+
+fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Failure {
+    let hint = match diag::nearest(name, known.clone()) {
+        Some(near) => format!("did you mean {near}?"),
+        None => format!("there are {}", known.collect::<Vec<_>>().join(", ")),
+    };
+    Failure::Input(format!("there is no {what} {name}; {hint}"))
+}
+
+fn show(chain: &SerialChain, report: &Report) {
+    print(&format!("{}: {}", chain.name, report.class));
+    if !report.free_joints.is_empty() {
+        print(&format!("free joints: {}", report.free_joints.join(", ")));
+    }
+    if report.snap_max > 0.0 {
+        print(&format!("snapped by {:.2e} to the ideal chain; answers are polished", report.snap_max));
+    }
+    print(&format!("generated in {:.2} s, {} bytes of Rust", report.generation_s, report.source_bytes));
+    print("set        poses  solved  recovered  wrong  max error  solutions  median");
+    for set in &report.sets {
+        print(&format!(
+            "{:9} {:6}  {:6}  {:9}  {:5}  {:9.1e}  {:9.2}  {:4.1} us",
+            set.name,
+            set.poses,
+            set.solved,
+            set.recovered,
+            set.wrong,
+            set.max_error,
+            set.mean_solutions,
+            set.median_ns / 1e3
+        ));
+    }
+}
+
+fn write_source(path: &Path, compiled: &Compiled, std: bool) -> Outcome {
+    let text = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("rs") => compiled.rust_source(&RustOptions { std }),
+        Some("ik") => compiled.text(),
+        _ => return Err(Failure::Input(format!("{}: the name must end in .rs or .ik", path.display()))),
+    };
+    write_whole(path, text.as_bytes())?;
+    say(&format!("wrote {}", path.display()));
+    Ok(())
+}
