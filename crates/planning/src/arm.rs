@@ -116,6 +116,16 @@ impl ArmModel {
         &self.limits
     }
 
+    /// `base_from_world`, the base being where the arm's chain starts.
+    pub fn base_from_world(&self) -> Pose {
+        self.world_from_base.inverse()
+    }
+
+    /// `tool_from_tip`: the link that the arm's chain ends at, in the tool frame.
+    pub fn tool_from_tip(&self) -> Pose {
+        self.tip_from_tool.inverse()
+    }
+
     /// `world_from_tool` at `q`.
     pub fn world_from_tool(&self, q: &[f64]) -> Pose {
         self.world_from_base * self.chain.forward(q) * self.tip_from_tool

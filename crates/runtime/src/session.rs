@@ -41,6 +41,10 @@ pub enum SessionError {
     Arm(#[from] ArmError),
 }
 
+/// Weight of a grasp whose cell of the reachability map has no solution at its centre: it may still be reached near
+/// another place of the cell, so it is tried last and not left out.
+const UNREACHED: f64 = 0.05;
+
 /// A task with its artefacts. Nothing is computed that could have been compiled.
 pub struct Session {
     task: Arc<Task>,
@@ -74,24 +78,32 @@ impl Session {
         let scene = Scene::new(&World::of_task(&task, kinematics.clone()), &links, &bodies, pairs);
 
         let arm = load_arm(knowledge, &task, &kinematics)?;
-        let mut grasps = Vec::new();
-        for (i, object) in task.objects.iter().enumerate() {
-            let set = match robot.arms[task.arm].gripper {
-                Some(gripper) => {
-                    let grasps =
-                        knowledge.load::<GraspSetKind>(&OfGripperAndObject { gripper, object: i })?;
-                    GraspSet::new(&robot.grippers[gripper].name, &object.name, (*grasps).clone())
-                }
-                None => GraspSet::default(),
-            };
-            grasps.push(set);
-        }
         let reachability = match knowledge.load::<Reachability>(&OfArm(task.arm)) {
             Ok(map) => Some(map),
             // Arms whose first joint slides have no map.
             Err(LoadError::NotPlanned { .. }) => None,
             Err(error) => return Err(error.into()),
         };
+        let mut grasps = Vec::new();
+        for (i, object) in task.objects.iter().enumerate() {
+            let set = match robot.arms[task.arm].gripper {
+                Some(gripper) => {
+                    let known = knowledge.load::<GraspSetKind>(&OfGripperAndObject { gripper, object: i })?;
+                    let mut ranked = (*known).clone();
+                    if let Some(map) = &reachability {
+                        let base_from_object = arm.base_from_world() * object.world_from_object;
+                        for grasp in &mut ranked {
+                            let base_from_tip =
+                                base_from_object * grasp.object_from_tool * arm.tool_from_tip();
+                            grasp.score *= UNREACHED + (1.0 - UNREACHED) * map.density(&base_from_tip);
+                        }
+                    }
+                    GraspSet::new(&robot.grippers[gripper].name, &object.name, ranked)
+                }
+                None => GraspSet::default(),
+            };
+            grasps.push(set);
+        }
         Ok(Self { task, kinematics, arm, scene, grasps, reachability })
     }
 
@@ -115,7 +127,8 @@ impl Session {
         &self.scene
     }
 
-    /// The grasp set of each object of the task.
+    /// The grasp set of each object of the task, ranked by quality and by how well the arm reaches it where the object
+    /// stands at the start (thesis section 3.1).
     pub fn grasps(&self) -> &[GraspSet] {
         &self.grasps
     }

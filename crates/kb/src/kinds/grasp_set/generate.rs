@@ -1,6 +1,7 @@
 //! From approaches to a ranked grasp set.
 
 use nalgebra::Point3;
+use robotc_core::Seed;
 use robotc_core::geom::{ConvexParts, MeshIndex};
 use robotc_core::model::TriMesh;
 use robotc_planning::grasp::{Contact, Grasp};
@@ -70,13 +71,14 @@ pub(super) enum Trial {
 }
 
 impl<'a> Generator<'a> {
-    /// Prepares the trials. Mesh, parts and centre of mass are in the object frame. `None` when the mesh is empty.
+    /// Prepares the trials, `seed` thins their approaches. Mesh, parts and centre of mass are in the object frame. `None` when the mesh is empty.
     pub(super) fn new(
         hand: &'a Hand<'a>,
         mesh: &TriMesh,
         parts: &'a ConvexParts,
         centre_of_mass: Point3<f64>,
         options: &'a GenerateOptions,
+        seed: Seed,
     ) -> Option<Self> {
         let (low, high) = mesh.bounds()?;
         let centre = nalgebra::center(&low, &high);
@@ -89,7 +91,7 @@ impl<'a> Generator<'a> {
             centre: centre_of_mass,
             length: length.max(f64::MIN_POSITIVE),
         };
-        let approaches = approaches(mesh, &MeshIndex::new(mesh), &options.approaches);
+        let approaches = approaches(mesh, &MeshIndex::new(mesh), &options.approaches, seed);
         Some(Self { hand, target: Target { parts, centre, radius }, surface, contact, options, approaches })
     }
 
@@ -235,6 +237,7 @@ mod tests {
                 cone: 0.0,
                 standoffs: vec![0.005],
                 preshapes: 1,
+                most: 100_000,
             },
             patch: PatchOptions { depth: 1e-3, points: 6 },
             surface_spacing: 0.003,
@@ -253,7 +256,8 @@ mod tests {
         let mesh = part.mesh();
         let object = ConvexParts::new(vec![part]);
         let options = options();
-        let generator = Generator::new(&hand, &mesh, &object, Point3::origin(), &options).unwrap();
+        let generator =
+            Generator::new(&hand, &mesh, &object, Point3::origin(), &options, Seed::new(1)).unwrap();
         generator.collect(generator.approaches.iter().map(|a| generator.attempt(a)).collect())
     }
 

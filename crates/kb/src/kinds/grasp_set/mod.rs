@@ -16,6 +16,7 @@ mod surface;
 use nalgebra::{Point3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 use robotc_core::Pose;
 use robotc_core::ids::LinkIdx;
+use robotc_core::model::Origin;
 use robotc_core::robot::Gripper;
 use robotc_planning::grasp::{Contact, Grasp};
 use serde::{Deserialize, Serialize};
@@ -24,6 +25,7 @@ use crate::codec;
 use crate::graph::{Dep, PlanError, Planner};
 use crate::kind::{DecodeError, Kind, Portability};
 use crate::kinds::ConvexParts;
+use crate::parameters::round_step;
 use crate::project::{OfGripperAndObject, OfShape};
 use crate::projection::{Mechanism, Shapes};
 use crate::record::Parts;
@@ -39,6 +41,8 @@ pub struct GraspSet;
 pub struct Inputs {
     hand: Mechanism,
     gripper: Gripper,
+    /// `palm_from_tool` as written.
+    tool: Origin,
     hand_parts: Vec<(LinkIdx, Dep<ConvexParts>)>,
     object: Shapes,
     object_parts: Dep<ConvexParts>,
@@ -49,7 +53,7 @@ crate::parameters! {
     /// Parameters of a grasp set.
     pub struct GraspParameters {
         /// Distance between the rays that find points of the surface.
-        spacing: f64 ["m"] in 0.0001..=10.0 = auto "a twelfth of the object's diagonal";
+        spacing: f64 ["m"] in 0.0001..=10.0 = auto "at most a twelfth of the object's diagonal";
         /// Directions of approach for each point: against the normal, then evenly round a cone about that.
         directions: u32 [""] in 1..=64 = 5;
         /// Half angle of that cone.
@@ -59,9 +63,11 @@ crate::parameters! {
         /// Distances of standing back after the first touch, evenly from least_standoff to most_standoff.
         standoffs: u32 [""] in 1..=16 = 2;
         /// Smallest distance of standing back.
-        least_standoff: f64 ["m"] in 0.0..=1.0 = auto "a fiftieth of the hand's size";
+        least_standoff: f64 ["m"] in 0.0..=1.0 = auto "at most a fiftieth of the hand's size";
         /// Largest distance of standing back.
-        most_standoff: f64 ["m"] in 0.0..=1.0 = auto "an eighth of the hand's size";
+        most_standoff: f64 ["m"] in 0.0..=1.0 = auto "at most an eighth of the hand's size";
+        /// Most approaches that are tried, drawn at random from all.
+        approaches: u32 [""] in 1..=10000000 = 6000;
         /// Coulomb friction between finger and object.
         friction: f64 [""] in 0.01..=10.0 = auto "that of the object";
         /// Edges of the pyramid that stands for a friction cone.
@@ -80,7 +86,7 @@ crate::parameters! {
 impl Kind for GraspSet {
     const NAME: &'static str = "grasp_set";
     const FORMAT: u32 = 1;
-    const ALGORITHM: u32 = 1;
+    const ALGORITHM: u32 = 2;
     const PORTABILITY: Portability = Portability::Portable;
     const DOC: &'static str =
         "The ways a gripper can hold an object: force-closure grasps with their contacts, best first.";
@@ -105,20 +111,16 @@ impl Kind for GraspSet {
         }
         let object_parts = planner.need::<ConvexParts>(&OfShape::Object(subject.object))?;
         let (object, friction) = (Shapes::of(&object.geometry), object.friction);
-        Ok(Inputs { hand, gripper, hand_parts, object, object_parts, friction })
+        let tool = planner.project().tool(subject.gripper);
+        Ok(Inputs { hand, gripper, tool: *tool, hand_parts, object, object_parts, friction })
     }
 
     fn key_parts(inputs: &Inputs, parts: &mut Parts) {
         // Artefacts are added by the planner; friction is the default of a parameter, which is part of the key.
-        let Inputs { hand, gripper, hand_parts: _, object, object_parts: _, friction: _ } = inputs;
+        let Inputs { hand, gripper, tool, hand_parts: _, object, object_parts: _, friction: _ } = inputs;
         hand.key_parts(parts);
-        let frame = gripper.palm_from_tool;
-        // The tool frame as read: the parser turns written numbers into a pose by fixed arithmetic.
-        let rotation = frame.rotation.coords;
-        let place: [f64; 3] = frame.translation.vector.into();
-        let turn: [f64; 4] = rotation.into();
         let approach: [f64; 3] = gripper.approach_in_tool.into_inner().into();
-        parts.add("tool", "", &(place, turn, approach));
+        parts.add("tool", "", &(*tool, approach));
         let fingers: Vec<usize> = gripper.fingers.iter().map(|&l| robotc_core::ids::Idx::index(l)).collect();
         let dofs: Vec<usize> = gripper.dofs.iter().map(|&d| robotc_core::ids::Idx::index(d)).collect();
         parts.add("fingers", "", &(fingers, dofs, gripper.closing.clone()));
@@ -139,9 +141,9 @@ impl Kind for GraspSet {
             .fold(0.0, f64::max)
             .max(inputs.gripper.palm_from_tool.translation.vector.norm());
         GraspParameters {
-            spacing: size / 12.0,
-            least_standoff: reach / 50.0,
-            most_standoff: reach / 8.0,
+            spacing: round_step(size / 12.0),
+            least_standoff: round_step(reach / 50.0),
+            most_standoff: round_step(reach / 8.0),
             friction: inputs.friction,
             patch_depth: (size / 120.0).clamp(0.0005, 0.002),
             ..GraspParameters::constants()
@@ -277,6 +279,7 @@ mod build {
                 cone: p.cone,
                 standoffs: (0..p.standoffs).map(standoff).collect(),
                 preshapes,
+                most: p.approaches as usize,
             },
             patch: PatchOptions { depth: p.patch_depth, points: p.patch_points as usize },
             surface_spacing: (2.0 * p.patch_depth).min(p.spacing),
@@ -300,7 +303,7 @@ mod build {
             let options = options(parameters, inputs.gripper.preshapes.len());
             let mesh = inputs.object.surface();
             let centre = centre_of_volume(&object_parts);
-            let generator = Generator::new(&hand, &mesh, &object_parts, centre, &options)
+            let generator = Generator::new(&hand, &mesh, &object_parts, centre, &options, context.seed())
                 .ok_or_else(|| BuildError::Impossible("the object has no surface".into()))?;
             let trials = context.map(&generator.approaches, |_, approach| generator.attempt(approach))?;
             Ok(generator.collect(trials).0)

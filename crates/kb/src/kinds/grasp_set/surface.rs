@@ -1,6 +1,7 @@
 //! The surface of an object as points with normals, and the approaches that start from it.
 
 use nalgebra::{Point3, Unit, Vector3};
+use robotc_core::Seed;
 use robotc_core::geom::MeshIndex;
 use robotc_core::model::TriMesh;
 
@@ -66,13 +67,20 @@ pub(super) struct ApproachOptions {
     pub(super) standoffs: Vec<f64>,
     /// Number of preshapes of the gripper.
     pub(super) preshapes: usize,
+    /// Most approaches; more than that are thinned at random.
+    pub(super) most: usize,
 }
 
-/// All approaches, in the order: surface point, direction, roll, preshape, standoff.
+/// Approaches, in the order: surface point, direction, roll, preshape, standoff.
 ///
 /// Surface points are where rays from the six sides of the box around the object first meet it (thesis section 4.2).
 /// Hands come in against the normal there, and along a cone around that direction.
-pub(super) fn approaches(mesh: &TriMesh, index: &MeshIndex, options: &ApproachOptions) -> Vec<Approach> {
+pub(super) fn approaches(
+    mesh: &TriMesh,
+    index: &MeshIndex,
+    options: &ApproachOptions,
+    seed: Seed,
+) -> Vec<Approach> {
     let mut out = Vec::new();
     for (target_in_object, inward) in seen_from_box(mesh, index, options.spacing) {
         for direction_in_object in cone(&inward, options.directions, options.cone) {
@@ -91,6 +99,13 @@ pub(super) fn approaches(mesh: &TriMesh, index: &MeshIndex, options: &ApproachOp
                 }
             }
         }
+    }
+    if out.len() > options.most {
+        let mut kept: Vec<usize> = (0..out.len()).collect();
+        seed.split("approaches").rng().shuffle(&mut kept);
+        kept.truncate(options.most);
+        kept.sort_unstable();
+        return kept.into_iter().map(|i| out[i]).collect();
     }
     out
 }
@@ -174,9 +189,13 @@ mod tests {
             cone: 0.3,
             standoffs: vec![0.0, 0.01],
             preshapes: 1,
+            most: 10_000,
         };
-        let all = approaches(&mesh, &MeshIndex::new(&mesh), &options);
+        let draw =
+            |options: &ApproachOptions| approaches(&mesh, &MeshIndex::new(&mesh), options, Seed::new(1));
+        let all = draw(&options);
         assert_eq!(all.len(), 6 * 16 * 5 * 4 * 2);
+        assert_eq!(draw(&ApproachOptions { most: 100, ..options.clone() }).len(), 100);
         for a in &all {
             assert!(a.direction_in_object.dot(&a.target_in_object.coords) < 0.0);
         }

@@ -16,6 +16,7 @@ use crate::codec;
 use crate::graph::{Dep, PlanError, Planner};
 use crate::kind::{DecodeError, Kind, Portability};
 use crate::kinds::{ConvexParts, IkSolver, SelfCollisionPairs};
+use crate::parameters::round_step;
 use crate::project::{OfArm, OfRobot, OfShape, Project};
 use crate::projection::{Limits, Mechanism};
 use crate::record::Parts;
@@ -30,7 +31,7 @@ crate::parameters! {
     /// Parameters of [`Reachability`].
     pub struct ReachabilityParameters {
         /// Edge of a cell.
-        step: f64 ["m"] in 0.001..=10.0 = auto "a fifteenth of the arm's reach";
+        step: f64 ["m"] in 0.001..=10.0 = auto "at most a fifteenth of the arm's reach";
         /// Fineness of rotations: 72 x 8^level of them.
         level: u32 [""] in 0..=3 = 0;
         /// Values tried for each free joint of a redundant arm.
@@ -103,10 +104,8 @@ impl Kind for Reachability {
     }
 
     fn defaults(inputs: &Inputs) -> ReachabilityParameters {
-        ReachabilityParameters {
-            step: map::reach(&inputs.chain()) / 15.0,
-            ..ReachabilityParameters::constants()
-        }
+        let step = round_step(map::reach(&inputs.chain()) / 15.0);
+        ReachabilityParameters { step, ..ReachabilityParameters::constants() }
     }
 
     fn encode(map: &ReachabilityMap) -> Vec<u8> {
