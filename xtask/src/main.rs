@@ -2,6 +2,7 @@
 
 mod assets;
 mod browser;
+mod docs;
 mod kill;
 mod python;
 mod test;
