@@ -6,7 +6,12 @@ use std::process::Command;
 use anyhow::{Context, bail};
 
 /// What the environment holds. Versions are pinned so that a run repeats.
-const PACKAGES: &[&str] = &["maturin==1.16.0", "numpy==2.2.6", "pytest==8.4.2"];
+const PACKAGES: &[&str] = &[
+    "maturin==1.16.0",
+    "numpy==2.2.6; python_version < '3.11'",
+    "numpy==2.3.5; python_version >= '3.11'",
+    "pytest==8.4.2",
+];
 
 /// Builds the wheel and runs its tests; further arguments go to pytest.
 pub(crate) fn run(args: &[String]) -> anyhow::Result<()> {

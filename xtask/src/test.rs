@@ -22,6 +22,10 @@ pub(crate) fn run(_args: &[String]) -> anyhow::Result<()> {
         execute(command)?;
         times.push(format!("{name} {:.0} s", start.elapsed().as_secs_f64()));
     }
+    let start = Instant::now();
+    println!("== python");
+    crate::python::run(&[])?;
+    times.push(format!("python {:.0} s", start.elapsed().as_secs_f64()));
     println!("== all passed: {}", times.join(", "));
     Ok(())
 }

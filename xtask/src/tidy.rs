@@ -1,6 +1,7 @@
 //! `cargo xtask tidy`: the architecture invariants that text can show, marks that must not land, and links in documentation.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use anyhow::bail;
 
@@ -84,10 +85,36 @@ pub(crate) fn run(_args: &[String]) -> anyhow::Result<()> {
         }
     }
     breaches.extend(crate::docs::breaches(&root));
+    check_generators(&mut breaches)?;
     if !breaches.is_empty() {
         bail!("{}", breaches.join("\n"));
     }
     println!("tidy: all rules kept");
+    Ok(())
+}
+
+/// Features that link generators.
+const GENERATORS: &[&str] = &["robotc-kb feature \"build\"", "robotc-ikgen feature \"generate\""];
+
+/// An application that only plans links no generator (invariant 4): built alone, no dependency of the example asks for
+/// one; the command line, which compiles, shows that the words are the right ones.
+fn check_generators(breaches: &mut Vec<String>) -> anyhow::Result<()> {
+    for (package, has_generators) in [("robotc-embedded", false), ("robotc", true)] {
+        let tree = Command::new(env!("CARGO"))
+            .args(["tree", "--locked", "--package", package, "--edges", "features,normal"])
+            .current_dir(crate::test::root())
+            .output()?;
+        if !tree.status.success() {
+            bail!("cargo tree failed: {}", String::from_utf8_lossy(&tree.stderr));
+        }
+        let tree = String::from_utf8_lossy(&tree.stdout);
+        for feature in GENERATORS {
+            if tree.contains(feature) != has_generators {
+                let verb = if has_generators { "lacks" } else { "links" };
+                breaches.push(format!("{package} {verb} {feature}"));
+            }
+        }
+    }
     Ok(())
 }
 
@@ -109,7 +136,7 @@ fn check_file(root: &Path, file: &Path, rule: &Rule, breaches: &mut Vec<String>)
     }
 }
 
-/// All Rust files under a folder, sorted; `tests`, `benches` and `examples` folders are left out.
+/// All Rust files under a folder, sorted; `tests.rs` and the folders `tests`, `benches` and `examples` are left out.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let Ok(entries) = std::fs::read_dir(folder) else { return found };
@@ -120,7 +147,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
             if !["tests", "benches", "examples", "target"].iter().any(|skip| name == *skip) {
                 found.extend(sources(&path));
             }
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
+        } else if path.extension().is_some_and(|extension| extension == "rs") && name != "tests.rs" {
             found.push(path);
         }
     }

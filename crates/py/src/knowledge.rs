@@ -9,7 +9,7 @@ use robotc_kb::{Event, Graph, Knowledge, Observer, Outcome, Project, Store};
 
 use crate::errors::{CompileError, PlanError};
 use crate::inverse::InverseKinematics;
-use crate::long::Interrupts;
+use crate::long::{self, Interrupts};
 use crate::plan::Session;
 use crate::robot::Robot;
 use crate::task::Task;
@@ -69,17 +69,13 @@ impl KnowledgeBase {
             Subject::Task(task) => Project::of_task(&task.spec),
             Subject::Robot(robot) => Project::of_robot(&robot.spec),
         };
-        let interrupts = Interrupts::new();
-        let watch = Watch { interrupts: &interrupts, progress };
-        let result = py.detach(|| {
-            let graph = Graph::plan(&project).map_err(|e| CompileError::new_err(e.to_string()))?;
-            let store = Store::open(&store).map_err(|e| CompileError::new_err(e.to_string()))?;
-            robotc_kb::compile(&Arc::new(graph), &Arc::new(store), &watch)
-                .map_err(|e| CompileError::new_err(e.to_string()))
-        });
-        drop(watch);
-        interrupts.outcome()?;
-        let report = result?;
+        let report = long::run(py, |interrupts| {
+            let failed = |e: &dyn std::fmt::Display| CompileError::new_err(e.to_string());
+            let graph = Graph::plan(&project).map_err(|e| failed(&e))?;
+            let store = Store::open(&store).map_err(|e| failed(&e))?;
+            let watch = Watch { interrupts, progress };
+            robotc_kb::compile(&Arc::new(graph), &Arc::new(store), &watch).map_err(|e| failed(&e))
+        })??;
         let failures: Vec<String> = report
             .outcomes
             .iter()

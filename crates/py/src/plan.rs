@@ -1,6 +1,6 @@
 //! Sessions and plans.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use numpy::{PyArray1, PyArray2};
@@ -15,7 +15,7 @@ use robotc_runtime::{MotionTable, execute, view};
 
 use crate::arrays;
 use crate::errors::PlanError;
-use crate::long::Interrupts;
+use crate::long;
 
 /// A task with its artefacts.
 #[pyclass(frozen, module = "robotc")]
@@ -45,11 +45,10 @@ impl Session {
     fn plan(slf: Py<Self>, py: Python<'_>, seed: Option<u64>, time_limit: f64) -> PyResult<Plan> {
         let this = slf.get();
         let seed = Seed::new(seed.unwrap_or(this.session.task().seed));
-        let interrupts = Interrupts::new();
         let options = ManipulationOptions::default();
         let mut trees = TreeKeeper::default();
         let start = Instant::now();
-        let planned = py.detach(|| {
+        let (plan, seconds) = long::run(py, |interrupts| {
             let interrupt = || {
                 if interrupts.stop() {
                     return Some(Interrupt::Cancelled);
@@ -65,9 +64,7 @@ impl Session {
                 .certify(&options, &plan, CERTIFIED_STEP)
                 .map_err(|e| PlanError::new_err(format!("the plan does not hold: {e}")))?;
             PyResult::Ok((plan, seconds))
-        });
-        interrupts.outcome()?;
-        let (plan, seconds) = planned?;
+        })??;
         let task = this.session.task();
         let table = MotionTable::of(&task.robot.model, &task.start, &plan);
         Ok(Plan { session: slf, plan, trees, table, seconds })
@@ -150,22 +147,20 @@ impl Plan {
         glb: Option<PathBuf>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let session = &self.session.get().session;
-        let execution = py
-            .detach(|| execute(session.world(), session.task(), &self.plan, CONTROL_RATE))
-            .map_err(|e| PlanError::new_err(e.to_string()))?;
-        if view.is_some() || glb.is_some() {
-            let recording = film(session, &execution, &self.trees);
-            let write = |path: &PathBuf, bytes: &[u8]| {
-                std::fs::write(path, bytes)
-                    .map_err(|e| PyOSError::new_err(format!("{}: {e}", path.display())))
-            };
-            if let Some(path) = &view {
-                write(path, view::html(&recording).as_bytes())?;
+        let execution = py.detach(|| {
+            let execution = execute(session.world(), session.task(), &self.plan, CONTROL_RATE)
+                .map_err(|e| PlanError::new_err(e.to_string()))?;
+            if view.is_some() || glb.is_some() {
+                let recording = film(session, &execution, &self.trees);
+                if let Some(path) = &view {
+                    write(path, view::html(&recording).as_bytes())?;
+                }
+                if let Some(path) = &glb {
+                    write(path, &view::glb(&recording))?;
+                }
             }
-            if let Some(path) = &glb {
-                write(path, &view::glb(&recording))?;
-            }
-        }
+            PyResult::Ok(execution)
+        })?;
         let poses = PyDict::new(py);
         if let Some(last) = execution.ticks.last() {
             for (object, pose) in session.task().objects.iter().zip(&last.world_from_objects) {
@@ -174,4 +169,8 @@ impl Plan {
         }
         Ok(poses)
     }
+}
+
+fn write(path: &Path, bytes: &[u8]) -> PyResult<()> {
+    std::fs::write(path, bytes).map_err(|e| PyOSError::new_err(format!("{}: {e}", path.display())))
 }
