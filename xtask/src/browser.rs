@@ -33,7 +33,8 @@ pub(crate) fn prepare() {
             .is_ok_and(|status| status.success())
     };
     let install = ["install", "-y", "--no-install-recommends", "chromium"];
-    if !quiet(&install) && !(quiet(&["update"]) && quiet(&install)) {
+    let installed = quiet(&install) || (quiet(&["update"]) && quiet(&install));
+    if !installed {
         println!("browser: the package could not be installed; the page test will say that it was skipped");
     }
 }

@@ -136,7 +136,7 @@ fn check_file(root: &Path, file: &Path, rule: &Rule, breaches: &mut Vec<String>)
     }
 }
 
-/// All Rust files under a folder, sorted; `tests.rs` and the folders `tests`, `benches` and `examples` are left out.
+/// All Rust files under a folder, sorted; `tests`, `benches` and `examples` folders are left out.
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let Ok(entries) = std::fs::read_dir(folder) else { return found };
@@ -147,7 +147,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
             if !["tests", "benches", "examples", "target"].iter().any(|skip| name == *skip) {
                 found.extend(sources(&path));
             }
-        } else if path.extension().is_some_and(|extension| extension == "rs") && name != "tests.rs" {
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
             found.push(path);
         }
     }
