@@ -5,6 +5,7 @@ mod browser;
 mod docs;
 mod kill;
 mod python;
+mod seeds;
 mod test;
 mod tidy;
 
@@ -17,6 +18,7 @@ const TASKS: &[Task] = &[
     ("assets", "write the geometry in specs/, or --check it", assets::run),
     ("kill", "kill compilations at random moments: [TRIALS] [PROGRAM]", kill::run),
     ("python", "build the Python wheel and run its tests, [ARGUMENTS OF PYTEST]", python::run),
+    ("seeds", "planning times and successes over many seeds", seeds::run),
     ("test", "all tests: format, lints, Rust, Python", test::run),
     ("tidy", "architecture invariants that text can show", tidy::run),
 ];

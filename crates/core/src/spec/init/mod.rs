@@ -19,7 +19,7 @@ use crate::ids::{DofIdx, LinkIdx};
 use crate::model::{Kinematics, RobotModel};
 use crate::srdf::Srdf;
 use crate::system::System;
-use crate::urdf::{self, LoadOptions};
+use crate::urdf::{self, LoadOptions, MeshPolicy};
 use crate::{joint_limits, srdf};
 
 /// What to write a specification for.
@@ -47,7 +47,8 @@ pub fn init(
     sources: &mut Sources,
     options: &InitOptions,
 ) -> (Option<String>, Diagnostics) {
-    let load = LoadOptions { packages: options.packages.clone(), ..LoadOptions::default() };
+    let packages = options.packages.clone();
+    let load = LoadOptions { packages, meshes: MeshPolicy::SkipAway, ..LoadOptions::default() };
     let (model, mut diagnostics) = urdf::load(system, sources, &options.description, &load);
     let Some(mut model) = model else { return (None, diagnostics) };
     if let Some(path) = &options.joint_limits {
