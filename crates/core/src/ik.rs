@@ -31,7 +31,7 @@ impl IkSolutions {
 
     /// Number of solutions.
     pub fn len(&self) -> usize {
-        if self.width == 0 { 0 } else { self.values.len() / self.width }
+        self.values.len().checked_div(self.width).unwrap_or(0)
     }
 
     /// Whether the pose has no solution.

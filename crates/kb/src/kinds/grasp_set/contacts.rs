@@ -10,8 +10,12 @@ use super::surface::SurfacePoint;
 /// What counts as touching.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PatchOptions {
-    /// Surface points this close to a finger are touched, metres: how far pad and object give way.
+    /// Surface points no more than this farther from a finger than the nearest are touched, metres: how far pad and object
+    /// give way.
     pub(super) depth: f64,
+    /// Farthest that the nearest surface point may be, metres: a finger stops at the convex parts of the object, which
+    /// stand off its surface.
+    pub(super) gap: f64,
     /// Most points that stand for one finger's patch.
     pub(super) points: usize,
 }
@@ -24,15 +28,22 @@ pub(super) fn patch(
     options: &PatchOptions,
 ) -> Vec<PointContact> {
     let Some(bounds) = parts.bounds() else { return Vec::new() };
-    let reach = bounds.padded(options.depth);
+    let reach = bounds.padded(options.gap + options.depth);
     let link_from_object = object_from_link.inverse();
     let centre_in_object = object_from_link * bounds.centre();
+    let near: Vec<(f64, &SurfacePoint)> = surface
+        .iter()
+        .filter_map(|s| {
+            let point_in_link = link_from_object * s.point;
+            reach.contains(&point_in_link).then(|| (parts.height(&point_in_link), s))
+        })
+        .collect();
+    let nearest = near.iter().map(|(height, _)| *height).fold(f64::INFINITY, f64::min);
+    if nearest > options.gap {
+        return Vec::new();
+    }
     let mut touched = Vec::new();
-    for s in surface {
-        let point_in_link = link_from_object * s.point;
-        if !reach.contains(&point_in_link) || parts.height(&point_in_link) > options.depth {
-            continue;
-        }
+    for (_, s) in near.iter().filter(|(height, _)| *height <= nearest.max(0.0) + options.depth) {
         // The finger presses from its side of the surface, whichever way the face is wound.
         let inward = -s.normal.into_inner();
         let away = s.point - centre_in_object;
@@ -81,7 +92,7 @@ mod tests {
         let object = box_part(Vector3::new(0.06, 0.06, 0.06)).mesh();
         let pad = ConvexParts::new(vec![box_part(Vector3::new(0.01, 0.02, 0.02))]);
         let object_from_pad = Pose::translation(0.035 + 2e-4, 0.0, 0.0);
-        let options = PatchOptions { depth: 1e-3, points: 4 };
+        let options = PatchOptions { depth: 1e-3, gap: 1e-3, points: 4 };
         let contacts = patch(&pad, &object_from_pad, &sample(&object, 0.002), &options);
         assert_eq!(contacts.len(), 4);
         for c in &contacts {
@@ -94,7 +105,7 @@ mod tests {
     fn a_pad_that_is_away_touches_nothing() {
         let object = box_part(Vector3::new(0.06, 0.06, 0.06)).mesh();
         let pad = ConvexParts::new(vec![box_part(Vector3::new(0.01, 0.02, 0.02))]);
-        let options = PatchOptions { depth: 1e-3, points: 4 };
+        let options = PatchOptions { depth: 1e-3, gap: 1e-3, points: 4 };
         assert!(
             patch(&pad, &Pose::translation(0.04, 0.0, 0.0), &sample(&object, 0.002), &options).is_empty()
         );

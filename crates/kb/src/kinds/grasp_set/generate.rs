@@ -138,10 +138,7 @@ impl<'a> Generator<'a> {
                 Trial::Miss(Miss::PalmTouches | Miss::Inside) => counts.palm += 1,
             }
         }
-        let mut grasps = distinct(grasps);
-        grasps.sort_by(|a, b| b.score.total_cmp(&a.score));
-        grasps.truncate(self.options.most_grasps);
-        (grasps, counts)
+        (spread(distinct(grasps), self.options.most_grasps), counts)
     }
 }
 
@@ -159,6 +156,33 @@ pub(super) fn contacts_of(
         }
     }
     contacts
+}
+
+/// At most `count` grasps, best first: the best of every range of approach directions in turn, so that the set has a
+/// grasp however the object lies and whatever stands around it.
+fn spread(mut grasps: Vec<Grasp>, count: usize) -> Vec<Grasp> {
+    grasps.sort_by(|a, b| b.score.total_cmp(&a.score));
+    // Each grasp's place among those from its directions; ties keep the order of scores.
+    let mut seen = [0usize; DIRECTIONS];
+    let mut turns: Vec<(usize, Grasp)> = Vec::with_capacity(grasps.len());
+    for grasp in grasps {
+        let place = &mut seen[direction_range(&grasp.approach_in_object)];
+        turns.push((*place, grasp));
+        *place += 1;
+    }
+    turns.sort_by_key(|(place, _)| *place);
+    turns.truncate(count);
+    let mut kept: Vec<Grasp> = turns.into_iter().map(|(_, grasp)| grasp).collect();
+    kept.sort_by(|a, b| b.score.total_cmp(&a.score));
+    kept
+}
+
+/// Number of ranges of directions: three dominant axes and the signs of all coordinates.
+const DIRECTIONS: usize = 24;
+
+fn direction_range(direction: &nalgebra::Unit<nalgebra::Vector3<f64>>) -> usize {
+    let sign = |axis: usize| usize::from(direction[axis] < 0.0) << axis;
+    direction.iamax() * 8 + sign(0) + sign(1) + sign(2)
 }
 
 /// Poses closer than this are the same grasp: metres, and sine of the half angle.
@@ -239,7 +263,7 @@ mod tests {
                 preshapes: 1,
                 most: 100_000,
             },
-            patch: PatchOptions { depth: 1e-3, points: 6 },
+            patch: PatchOptions { depth: 1e-3, gap: 1e-3, points: 6 },
             surface_spacing: 0.003,
             friction: 0.5,
             cone_edges: 8,
@@ -274,6 +298,19 @@ mod tests {
             assert!(g.contacts.iter().any(|c| c.point_in_object.x > 0.0));
             assert!(g.contacts.iter().any(|c| c.point_in_object.x < 0.0));
         }
+    }
+
+    #[test]
+    fn a_small_set_keeps_all_directions_of_a_large_one() {
+        let (grasps, _) = grasps_of([0.05, 0.12, 0.12]);
+        let directions = |grasps: &[Grasp]| {
+            let ranges = grasps.iter().map(|g| direction_range(&g.approach_in_object));
+            ranges.collect::<std::collections::BTreeSet<_>>()
+        };
+        let all = directions(&grasps);
+        let few = spread(grasps, all.len());
+        assert!(all.len() >= 4 && few.len() == all.len());
+        assert_eq!(directions(&few), all);
     }
 
     #[test]

@@ -61,19 +61,21 @@ crate::parameters! {
         /// Equal turns of the hand about the direction of approach.
         rolls: u32 [""] in 1..=360 = 8;
         /// Distances of standing back after the first touch, evenly from least_standoff to most_standoff.
-        standoffs: u32 [""] in 1..=16 = 2;
+        standoffs: u32 [""] in 1..=16 = 4;
         /// Smallest distance of standing back.
         least_standoff: f64 ["m"] in 0.0..=1.0 = auto "at most a fiftieth of the hand's size";
         /// Largest distance of standing back.
-        most_standoff: f64 ["m"] in 0.0..=1.0 = auto "at most an eighth of the hand's size";
+        most_standoff: f64 ["m"] in 0.0..=1.0 = auto "at most the hand's size";
         /// Most approaches that are tried, drawn at random from all.
-        approaches: u32 [""] in 1..=10000000 = 6000;
+        approaches: u32 [""] in 1..=10000000 = 8000;
         /// Coulomb friction between finger and object.
         friction: f64 [""] in 0.01..=10.0 = auto "that of the object";
         /// Edges of the pyramid that stands for a friction cone.
         cone_edges: u32 [""] in 3..=64 = 8;
-        /// Surface points this close to a finger are touched: how far pad and object give way.
+        /// Surface points no more than this farther from a finger than the nearest are touched: how far pad and object give way.
         patch_depth: f64 ["m"] in 0.0001..=0.1 = auto "a 120th of the object's diagonal, from 0.5 to 2 mm";
+        /// How far the convex parts of the object may stand off its surface where a finger touches them.
+        cover_gap: f64 ["m"] in 0.0..=1.0 = auto "at most a twentieth of the object's diagonal";
         /// Most points that stand for the patch of one finger.
         patch_points: u32 [""] in 1..=64 = 6;
         /// Smallest epsilon of a grasp that is kept.
@@ -86,7 +88,7 @@ crate::parameters! {
 impl Kind for GraspSet {
     const NAME: &'static str = "grasp_set";
     const FORMAT: u32 = 1;
-    const ALGORITHM: u32 = 2;
+    const ALGORITHM: u32 = 3;
     const PORTABILITY: Portability = Portability::Portable;
     const DOC: &'static str =
         "The ways a gripper can hold an object: force-closure grasps with their contacts, best first.";
@@ -143,8 +145,9 @@ impl Kind for GraspSet {
         GraspParameters {
             spacing: round_step(size / 12.0),
             least_standoff: round_step(reach / 50.0),
-            most_standoff: round_step(reach / 8.0),
+            most_standoff: round_step(reach),
             friction: inputs.friction,
+            cover_gap: round_step(size / 20.0),
             patch_depth: (size / 120.0).clamp(0.0005, 0.002),
             ..GraspParameters::constants()
         }
@@ -281,7 +284,7 @@ mod build {
                 preshapes,
                 most: p.approaches as usize,
             },
-            patch: PatchOptions { depth: p.patch_depth, points: p.patch_points as usize },
+            patch: PatchOptions { depth: p.patch_depth, gap: p.cover_gap, points: p.patch_points as usize },
             surface_spacing: (2.0 * p.patch_depth).min(p.spacing),
             friction: p.friction,
             cone_edges: p.cone_edges as usize,
