@@ -1,5 +1,7 @@
 //! Specifications: golden diagnostics, the specifications that ship, and texts made worse on purpose.
 
+#![allow(clippy::print_stderr, reason = "a skipped test says so")]
+
 mod disk;
 mod findings;
 mod guesses;

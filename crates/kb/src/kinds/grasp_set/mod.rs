@@ -88,7 +88,7 @@ crate::parameters! {
 impl Kind for GraspSet {
     const NAME: &'static str = "grasp_set";
     const FORMAT: u32 = 1;
-    const ALGORITHM: u32 = 3;
+    const ALGORITHM: u32 = 4;
     const PORTABILITY: Portability = Portability::Portable;
     const DOC: &'static str =
         "The ways a gripper can hold an object: force-closure grasps with their contacts, best first.";
