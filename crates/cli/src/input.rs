@@ -40,6 +40,10 @@ pub(crate) fn project(path: &Path) -> Outcome<Project> {
 
 /// Reads a task specification.
 pub(crate) fn task(path: &Path) -> Outcome<TaskSpec> {
+    if kind_of(path) == Some(SpecKind::Robot) {
+        let path = path.display();
+        return Err(Failure::Input(format!("{path} is a robot specification; this needs a *.task.toml")));
+    }
     let mut sources = Sources::new();
     let table = robotc_kb::kinds::parameter_table();
     let (spec, found) = spec::load_task(&OsSystem, &mut sources, path, &table);

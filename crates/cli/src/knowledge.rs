@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
 use clap::Args;
+use robotc_kb::explain::Reason;
 use robotc_kb::{CompileReport, Event, Graph, Observer, Outcome as NodeOutcome, Project, Store, StoreError};
 
 use crate::output::{self, Failure, Outcome};
@@ -125,7 +126,12 @@ impl Observer for Display {
         match event {
             Event::Waiting => progress.finish("waiting for another robotc that is compiling"),
             Event::Started { kind, subject, reason } => {
-                let running_now = Running { start: Instant::now(), reason: reason.to_string() };
+                // That something new is computed needs no reason.
+                let reason = match reason {
+                    Reason::First => String::new(),
+                    reason => format!(" ({reason})"),
+                };
+                let running_now = Running { start: Instant::now(), reason };
                 running.insert(format!("{kind} of {subject}"), running_now);
             }
             Event::Progress { kind, subject, done, total } => {
@@ -141,8 +147,7 @@ impl Observer for Display {
                     Some(r) => (r.start.elapsed().as_secs_f64(), r.reason),
                     None => (0.0, String::new()),
                 };
-                progress
-                    .finish(&format!("  {title}: {seconds:.1} s, {} ({reason})", output::size(size as u64)));
+                progress.finish(&format!("  {title}: {seconds:.1} s, {}{reason}", output::size(size as u64)));
             }
             Event::Failed { kind, subject, error } => {
                 let title = format!("{kind} of {subject}");

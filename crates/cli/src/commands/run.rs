@@ -100,10 +100,19 @@ pub(crate) fn run(args: &Run) -> Outcome {
     if let Some(path) = &args.report {
         let report = Report::new(&outcome, &clock, seed, &compiled.knowledge, &session, done.as_ref().ok());
         let text = serde_json::to_string_pretty(&report).expect("plain values always have a JSON form");
-        write_whole(path, text.as_bytes())?;
+        write_whole(path, (text + "\n").as_bytes())?;
+        say(&format!("wrote {}", path.display()));
     }
     clock.print();
-    if outcome == SUCCESS { Ok(()) } else { Err(Failure::Input(outcome)) }
+    if knowledge::interrupted() && done.is_err() {
+        return Err(Failure::Environment("interrupted".into()));
+    }
+    if outcome == SUCCESS {
+        print(SUCCESS);
+        Ok(())
+    } else {
+        Err(Failure::Input(outcome))
+    }
 }
 
 const SUCCESS: &str = "success";

@@ -142,7 +142,7 @@ fn kinds(parameters: &ParameterTable) -> Map<String, Value> {
             };
             let unit =
                 if parameter.unit.is_empty() { String::new() } else { format!(" Unit: {}.", parameter.unit) };
-            value.insert("description".to_owned(), json!(format!("{}{unit}{note}", parameter.doc)));
+            value.insert("description".to_owned(), json!(format!("{}{unit}{note}", parameter.doc.trim())));
             if let Some(default) = default {
                 value.insert("default".to_owned(), default);
             }
