@@ -12,5 +12,5 @@ pub mod view;
 
 pub use execute::{Execution, ExecutionError, execute};
 pub use film::film;
-pub use session::{Session, SessionError};
+pub use session::{NoPlan, Session, SessionError};
 pub use table::MotionTable;

@@ -41,6 +41,20 @@ pub enum SessionError {
     Arm(#[from] ArmError),
 }
 
+/// Why there is no plan that holds.
+#[derive(Debug, Error)]
+pub enum NoPlan {
+    /// The planner found none.
+    #[error(transparent)]
+    Failed(#[from] PlanFailure),
+    /// None of the plans that it found passed the certificate; this is what was wrong with the last.
+    #[error("the plan does not hold: {0}")]
+    Uncertified(#[from] Uncertified),
+}
+
+/// Plans made before giving up on one that holds.
+const ATTEMPTS: u64 = 4;
+
 /// Weight of a grasp whose cell of the reachability map has no solution at its centre: it may still be reached near
 /// another place of the cell, so it is tried last and not left out.
 const UNREACHED: f64 = 0.05;
@@ -143,16 +157,29 @@ impl Session {
         World::of_task(&self.task, self.kinematics.clone())
     }
 
-    /// Plans the task. The result depends on options and seed alone unless the budget ends it.
+    /// Plans the task and certifies the plan: see [`certify`](Self::certify) for `resolution`. A plan that does not hold
+    /// is thrown away and made again from the next stream of `seed`, a few times at most. The result depends on options
+    /// and seed alone unless the budget ends it.
     pub fn plan(
         &self,
         options: &ManipulationOptions,
         budget: &Budget<'_>,
         seed: robotc_core::Seed,
+        resolution: f64,
         observer: &mut dyn Observer,
-    ) -> Result<Plan, PlanFailure> {
+    ) -> Result<Plan, NoPlan> {
         let grasps: Vec<&GraspSet> = self.grasps.iter().collect();
-        pick_and_place(&self.problem(&grasps), options, budget, seed, observer)
+        let problem = self.problem(&grasps);
+        let mut attempt = 0;
+        loop {
+            let plan = pick_and_place(&problem, options, budget, seed.at(attempt), observer)?;
+            attempt += 1;
+            match certify(&problem, options, &plan, resolution) {
+                Ok(_) => return Ok(plan),
+                Err(wrong) if attempt == ATTEMPTS => return Err(wrong.into()),
+                Err(_) => {}
+            }
+        }
     }
 
     /// Replays a plan densely and checks everything about it: no point of the robot travels more than `resolution`

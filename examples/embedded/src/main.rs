@@ -12,6 +12,9 @@ use robotc_planning::Budget;
 use robotc_planning::manipulation::ManipulationOptions;
 use robotc_runtime::Session;
 
+/// Largest travel of any point of the robot between two looks of the certificate, metres.
+const CERTIFIED_STEP: f64 = 0.002;
+
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [task, store] = arguments.as_slice() else {
@@ -31,7 +34,8 @@ fn plan(task: &Path, store: &Path) -> Result<(), Box<dyn std::error::Error>> {
     let knowledge = open(task, store)?;
     let session = Session::open(&knowledge)?;
     let seed = Seed::new(session.task().seed);
-    let plan = session.plan(&ManipulationOptions::default(), &Budget::unlimited(), seed, &mut ())?;
+    let options = ManipulationOptions::default();
+    let plan = session.plan(&options, &Budget::unlimited(), seed, CERTIFIED_STEP, &mut ())?;
 
     // What the controller of a robot would be given: joint values over time, a segment at a time.
     for segment in &plan.segments {
