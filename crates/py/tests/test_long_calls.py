@@ -22,6 +22,8 @@ def compile_mug(folder, progress=None):
 
 
 def test_interrupt_stops_a_compilation_while_other_threads_run(tmp_path):
+    # A shell that runs the tests in the background has them ignore Ctrl-C.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     sent, ticks, done = [], [], threading.Event()
 
     def interrupt():
@@ -42,6 +44,7 @@ def test_interrupt_stops_a_compilation_while_other_threads_run(tmp_path):
             compile_mug(tmp_path)
     finally:
         stopped = time.monotonic()
+        signal.signal(signal.SIGINT, before)
         done.set()
         for thread in threads:
             thread.join()
