@@ -8,7 +8,7 @@ pub(super) fn program(p: &Program) -> String {
     let mut out = String::new();
     let free: Vec<String> = p.free.iter().map(usize::to_string).collect();
     let _ = writeln!(out, "ikgen 1");
-    let _ = writeln!(out, "class {:?}", p.class);
+    let _ = writeln!(out, "class \"{}\"", p.class);
     let _ = writeln!(out, "variables {}", p.variables);
     let _ = writeln!(out, "free [{}]", free.join(" "));
     let _ = writeln!(out, "snap {:?}", p.snap);
