@@ -53,7 +53,7 @@ pub(super) fn wrenches(contacts: &[PointContact], model: &ContactModel) -> Vec<V
 }
 
 /// Two unit vectors that make a right-handed frame with `normal`.
-fn tangents(normal: &Unit<Vector3<f64>>) -> (Vector3<f64>, Vector3<f64>) {
+pub(super) fn tangents(normal: &Unit<Vector3<f64>>) -> (Vector3<f64>, Vector3<f64>) {
     let smallest = normal.iamin();
     let mut other = Vector3::zeros();
     other[smallest] = 1.0;

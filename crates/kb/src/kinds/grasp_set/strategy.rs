@@ -7,6 +7,7 @@ use nalgebra::{Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use robotc_core::Pose;
 use robotc_core::geom::{self, ConvexParts};
 
+use super::closure::tangents;
 use super::hand::Hand;
 
 /// Where and how a hand comes in.
@@ -108,16 +109,13 @@ pub(super) fn close_on(hand: &Hand, target: &Target, approach: &Approach) -> Res
 fn tool_at(approach: &Approach, approach_in_tool: &Unit<Vector3<f64>>) -> Pose {
     let align = UnitQuaternion::rotation_between(approach_in_tool, &approach.direction_in_object)
         .unwrap_or_else(|| {
-            UnitQuaternion::from_axis_angle(&perpendicular(approach_in_tool), std::f64::consts::PI)
+            UnitQuaternion::from_axis_angle(
+                &Unit::new_unchecked(tangents(approach_in_tool).0),
+                std::f64::consts::PI,
+            )
         });
     let roll = UnitQuaternion::from_axis_angle(&approach.direction_in_object, approach.roll);
     Pose::from_parts(Translation3::from(approach.target_in_object.coords), roll * align)
-}
-
-fn perpendicular(v: &Unit<Vector3<f64>>) -> Unit<Vector3<f64>> {
-    let mut other = Vector3::zeros();
-    other[v.iamin()] = 1.0;
-    Unit::new_normalize(v.cross(&other))
 }
 
 /// Closes each drive until a link that it moves touches; a drive with several fingers is centred.

@@ -5,6 +5,7 @@ use robotc_core::Seed;
 use robotc_core::geom::MeshIndex;
 use robotc_core::model::TriMesh;
 
+use super::closure::tangents;
 use super::strategy::Approach;
 
 /// A point of a surface.
@@ -143,10 +144,7 @@ fn seen_from_box(mesh: &TriMesh, index: &MeshIndex, spacing: f64) -> Vec<(Point3
 /// `axis` itself, then `count - 1` directions evenly round a cone of this half angle about it.
 fn cone(axis: &Unit<Vector3<f64>>, count: usize, half_angle: f64) -> Vec<Unit<Vector3<f64>>> {
     let mut out = vec![*axis];
-    let mut other = Vector3::zeros();
-    other[axis.iamin()] = 1.0;
-    let u = axis.cross(&other).normalize();
-    let v = axis.cross(&u);
+    let (u, v) = tangents(axis);
     let ring = count.saturating_sub(1);
     for k in 0..ring {
         let angle = std::f64::consts::TAU * k as f64 / ring as f64;
