@@ -9,7 +9,7 @@ use serde_saphyr::{Location, Spanned};
 
 use crate::diag::{Diagnostic, Diagnostics, FileId, Sources, Span, nearest};
 use crate::model::{DynamicLimits, RobotModel};
-use crate::system::{ReadError, System};
+use crate::system::System;
 
 /// What a file says about one joint; `None` where it says nothing, or says that there is no limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,8 +117,7 @@ pub fn load(
             return (BTreeMap::new(), found);
         }
         Err(error) => {
-            let code = if error == ReadError::NotFound { "R0001" } else { "R0002" };
-            found.push(Diagnostic::error(code, format!("{}: {error}", path.display())));
+            found.push(Diagnostic::unreadable(path, &error));
             return (BTreeMap::new(), found);
         }
     };

@@ -10,6 +10,10 @@ pub use codes::{CODES, CodeInfo, explain};
 pub use nearest::nearest;
 pub use sources::{FileId, LineColumn, Sources, Span};
 
+use std::path::Path;
+
+use crate::system::ReadError;
+
 /// How bad a finding is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
@@ -47,6 +51,15 @@ impl Diagnostic {
     /// A warning with this code and message.
     pub fn warning(code: &'static str, message: impl Into<String>) -> Self {
         Self::new(code, Severity::Warning, message)
+    }
+
+    /// The error that a file could not be read.
+    pub fn unreadable(path: &Path, error: &ReadError) -> Self {
+        let path = path.display();
+        match error {
+            ReadError::NotFound => Self::error("R0001", format!("there is no file {path}")),
+            ReadError::Unreadable(why) => Self::error("R0002", format!("{path} cannot be read: {why}")),
+        }
     }
 
     fn new(code: &'static str, severity: Severity, message: impl Into<String>) -> Self {

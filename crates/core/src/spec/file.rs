@@ -9,7 +9,7 @@ use super::parameters::{ParameterTable, ParameterValue, Parameters};
 use super::schema::Kind;
 use super::validate::validate;
 use crate::diag::{Diagnostic, Diagnostics, FileId, Sources, Span};
-use crate::system::{ReadError, System};
+use crate::system::System;
 
 /// A specification as a tree of values. Values that the schema refused are still in it.
 pub(super) struct SpecFile {
@@ -71,12 +71,7 @@ pub(super) fn read_text(
             }
             Err(_) => Diagnostic::error("R0002", format!("{} is not UTF-8 text", path.display())),
         },
-        Err(ReadError::NotFound) => {
-            Diagnostic::error("R0001", format!("there is no file {}", path.display()))
-        }
-        Err(ReadError::Unreadable(why)) => {
-            Diagnostic::error("R0002", format!("{} cannot be read: {why}", path.display()))
-        }
+        Err(error) => Diagnostic::unreadable(path, &error),
     };
     diagnostics.push(match at {
         Some(span) => finding.at(span, "named here"),

@@ -12,7 +12,7 @@ use crate::joint_limits;
 use crate::model::{Kinematics, Origin, RobotModel};
 use crate::robot::{Arm, Gripper, Robot};
 use crate::srdf::{self, Srdf};
-use crate::system::System;
+use crate::system::{ReadError, System};
 use crate::urdf::{self, LoadOptions};
 
 /// A checked robot specification.
@@ -141,7 +141,7 @@ fn referenced(
         return Some(path);
     }
     diagnostics.push(
-        Diagnostic::error("R0001", format!("there is no file {}", path.display()))
+        Diagnostic::unreadable(&path, &ReadError::NotFound)
             .at(place, "named here")
             .expected(format!("{what}, relative to the folder of this specification")),
     );

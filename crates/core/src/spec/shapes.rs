@@ -12,7 +12,7 @@ use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::geom::Aabb;
 use crate::mesh::{self, LoadedMesh, MeshFormat, UpAxis};
 use crate::model::{Geometry, Origin, Shape, TriMesh};
-use crate::system::{ReadError, System};
+use crate::system::System;
 
 /// Extents, in metres, outside of which a mesh is more likely in another unit than meant so.
 const USUAL_EXTENT: (f64, f64) = (0.002, 10.0);
@@ -107,10 +107,7 @@ impl<'a> Shapes<'a> {
                 Err(error) => Diagnostic::error("R0505", format!("mesh {name}: {error}"))
                     .expected("an STL, OBJ or COLLADA file with triangles"),
             },
-            Err(ReadError::NotFound) => Diagnostic::error("R0001", format!("there is no file {name}")),
-            Err(ReadError::Unreadable(why)) => {
-                Diagnostic::error("R0002", format!("{name} cannot be read: {why}"))
-            }
+            Err(error) => Diagnostic::unreadable(path, &error),
         };
         diagnostics.push(finding.at(place, "named here"));
         None

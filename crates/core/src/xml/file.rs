@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::{Element, Limits, parse};
 use crate::diag::{Diagnostic, Diagnostics, FileId, Sources, Span};
-use crate::system::{ReadError, System};
+use crate::system::System;
 
 /// The root element of the file at `path`, as far as it could be made out.
 ///
@@ -17,7 +17,11 @@ pub(crate) fn load(
 ) -> (Option<Element>, Diagnostics) {
     let bytes = match system.read(path) {
         Ok(bytes) => bytes,
-        Err(error) => return (None, unreadable(path, &error)),
+        Err(error) => {
+            let mut found = Diagnostics::new();
+            found.push(Diagnostic::unreadable(path, &error));
+            return (None, found);
+        }
     };
     let mut found = Diagnostics::new();
     let (text, bad_byte) = decode(&bytes);
@@ -32,16 +36,6 @@ pub(crate) fn load(
     let (root, from_parser) = parse(&text, file, Limits::default());
     found.extend(from_parser);
     (root, found)
-}
-
-fn unreadable(path: &Path, error: &ReadError) -> Diagnostics {
-    let code = match error {
-        ReadError::NotFound => "R0001",
-        ReadError::Unreadable(_) => "R0002",
-    };
-    let mut found = Diagnostics::new();
-    found.push(Diagnostic::error(code, format!("{}: {error}", path.display())));
-    found
 }
 
 /// Text of UTF-8 or, with a byte order mark, UTF-16 bytes; and where the first undecodable byte is.
