@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use nalgebra::{Matrix6, Matrix6xX, SVector, Vector6};
+use nalgebra::{Matrix6, Matrix6xX, Point3, SVector, Vector6};
 use robotc_core::ik::{IkSolutions, InverseKinematics};
 use robotc_core::model::{ChainError, ChainMotion};
 use robotc_core::robot::Robot;
@@ -161,6 +161,28 @@ impl ArmModel {
         jacobian
     }
 
+    /// For each variable, how far a point fixed to the tool moves for each unit of it: metres, at most, at any values
+    /// within the limits.
+    pub fn point_travel(&self, point_in_tool: &Point3<f64>) -> Vec<f64> {
+        let last_from_tool = self.chain.last_from_tip * self.tip_from_tool;
+        // Distance of the point from the origin of the joint reached so far.
+        let mut reach = (last_from_tool * point_in_tool).coords.norm();
+        let mut travel = vec![0.0; self.dofs.len()];
+        for joint in self.chain.joints.iter().rev() {
+            let factor = joint.multiplier.abs();
+            match joint.motion {
+                ChainMotion::Revolute => travel[joint.variable] += factor * reach,
+                ChainMotion::Prismatic => {
+                    travel[joint.variable] += factor;
+                    let axis = &self.space.axes()[joint.variable];
+                    reach += factor * axis.lower.abs().max(axis.upper.abs()) + joint.offset.abs();
+                }
+            }
+            reach += joint.previous_from_joint.translation.vector.norm();
+        }
+        travel
+    }
+
     /// The small motion that moves the tool by `twist` (linear and angular, world axes): damped least squares, so that
     /// it stays bounded near singular configurations.
     pub fn follow(&self, q: &[f64], twist: &Vector6<f64>) -> Vec<f64> {
@@ -276,6 +298,25 @@ mod tests {
                 assert!((jacobian[(row, i)] - linear[row]).abs() < 1e-6);
                 assert!((jacobian[(row + 3, i)] - angular[row]).abs() < 1e-6);
             }
+        }
+    }
+
+    #[test]
+    fn no_point_of_the_tool_travels_farther_than_its_bound() {
+        let arm = testbed::arm(true);
+        let point = Point3::new(0.1, 0.05, -0.2);
+        let travel = arm.point_travel(&point);
+        let mut rng = robotc_core::Seed::new(6).rng();
+        for _ in 0..200 {
+            let q = arm.space().sample(&mut rng);
+            let moved = arm.space().sample_near(&q, 0.01, &mut rng);
+            let way = nalgebra::distance(
+                &(arm.world_from_tool(&q) * point),
+                &(arm.world_from_tool(&moved) * point),
+            );
+            let difference = arm.space().difference(&q, &moved);
+            let bound: f64 = travel.iter().zip(&difference).map(|(t, d)| t * d.abs()).sum();
+            assert!(way <= bound + 1e-12, "{way} {bound}");
         }
     }
 

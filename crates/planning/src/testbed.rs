@@ -4,12 +4,20 @@
 use std::sync::Arc;
 
 use nalgebra::{Rotation3, Vector3};
+use robotc_core::geom::{ConvexParts, box_part};
 use robotc_core::ik::{IkSolutions, InverseKinematics};
-use robotc_core::model::{DynamicLimits, Geometry, JointMotion, Origin, RobotBuilder, RobotModel, Shape};
+use robotc_core::model::{
+    DynamicLimits, Geometry, JointMotion, Link, Origin, RobotBuilder, RobotModel, Shape,
+};
 use robotc_core::robot::{Arm, Base, Gripper, Preshape, Robot};
-use robotc_core::{Configuration, Kinematics, Pose};
+use robotc_core::world::World;
+use robotc_core::{Configuration, DofIdx, Kinematics, LinkIdx, Pose, TypedVec};
 
 use crate::arm::ArmModel;
+use crate::constraint::Constraint;
+use crate::edge::{EdgeChecker, Obstruction};
+use crate::scene::{RobotChecker, Rules, Scene};
+use crate::space::Space;
 
 const SHOULDER: f64 = 0.4;
 const UPPER: f64 = 0.5;
@@ -196,4 +204,83 @@ impl InverseKinematics for ClosedForm {
 
 fn flip(angle: f64) -> f64 {
     if angle > 0.0 { angle - std::f64::consts::PI } else { angle + std::f64::consts::PI }
+}
+
+/// Joint limits, and a constraint if there is one: nothing to collide with.
+pub(crate) struct Limits<'a> {
+    space: &'a Space,
+    constraint: Option<&'a dyn Constraint>,
+}
+
+impl<'a> Limits<'a> {
+    pub(crate) fn new(arm: &'a ArmModel) -> Self {
+        Self { space: arm.space(), constraint: None }
+    }
+
+    pub(crate) fn with_constraint(self, constraint: &'a dyn Constraint) -> Self {
+        Self { constraint: Some(constraint), ..self }
+    }
+}
+
+impl EdgeChecker for Limits<'_> {
+    fn space(&self) -> &Space {
+        self.space
+    }
+
+    fn state(&mut self, q: &[f64]) -> Result<f64, Obstruction> {
+        match (self.space.contains(q), self.constraint) {
+            (false, _) => Err(Obstruction::Bounds),
+            (true, Some(constraint)) if !constraint.holds(q) => Err(Obstruction::Constraint),
+            _ => Ok(0.0),
+        }
+    }
+
+    fn travel(&self, difference: &[f64]) -> f64 {
+        let travel = difference.iter().map(|d| d.abs()).sum();
+        self.constraint.map_or(travel, |c| travel.max(self.resolution() * c.size(difference)))
+    }
+
+    fn resolution(&self) -> f64 {
+        0.02
+    }
+}
+
+/// The arm at the origin among boxes, given by size and centre; bodies are numbered in this order.
+pub(crate) fn scene(robot: &Robot, boxes: &[([f64; 3], [f64; 3])]) -> Scene {
+    let kinematics = Kinematics::new(robot.model.clone());
+    let mut world = World::new(kinematics, Pose::identity(), rest(robot));
+    let mut body_parts = TypedVec::new();
+    for (i, (size, at)) in boxes.iter().enumerate() {
+        world.add(&format!("box{i}"), Arc::new(vec![]), Pose::translation(at[0], at[1], at[2]));
+        body_parts.push(Arc::new(ConvexParts::new(vec![box_part(Vector3::from(*size))])));
+    }
+    let part = |g: &Geometry| match g.shape {
+        Shape::Box { size } => box_part(Vector3::from(size)).transformed(&g.origin.pose()),
+        _ => panic!("the test arm is made of boxes"),
+    };
+    let parts = |link: &Link| Arc::new(link.collisions.iter().map(part).collect());
+    let link_parts: TypedVec<LinkIdx, Arc<ConvexParts>> = robot.model.links().iter().map(parts).collect();
+    let links: Vec<LinkIdx> = robot.model.links().indices().collect();
+    let self_pairs = links
+        .iter()
+        .flat_map(|&a| links.iter().map(move |&b| (a, b)))
+        .filter(|pair| pair.0 < pair.1 && !robot.ignored_pairs.contains(pair))
+        .collect();
+    Scene::new(&world, &link_parts, &body_parts, self_pairs)
+}
+
+/// Motions of the arm with 2 mm of margin, looked at every 4 mm.
+pub(crate) fn checker<'a>(scene: &'a Scene, arm: &'a ArmModel, q: &Configuration) -> RobotChecker<'a> {
+    let rules = Rules { margin: 0.002, ..Rules::default() };
+    RobotChecker::new(scene, arm.space(), arm.dofs(), q, rules, 0.004)
+}
+
+/// The joints of the arm and then the fingers.
+pub(crate) fn arm_and_fingers(robot: &Robot) -> (Space, Vec<DofIdx>) {
+    let dofs: Vec<DofIdx> = robot.arms[0].dofs.iter().chain(&robot.grippers[0].dofs).copied().collect();
+    let axis = |dof: &DofIdx| {
+        let d = &robot.model.dofs()[*dof];
+        crate::space::Axis::bounded(d.lower, d.upper)
+    };
+    (Space::new(dofs.iter().map(axis).collect()), dofs)
 }

@@ -3,8 +3,6 @@
 //! Two forests grow towards each other: one from the start, one whose roots are the goals drawn so far. The forest
 //! with fewer nodes is grown next, so that a cramped goal does not starve the other side.
 
-mod tree;
-
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -14,7 +12,7 @@ use crate::budget::{Budget, Interrupt};
 use crate::constraint::Constraint;
 use crate::edge::{Blocked, EdgeChecker, Obstruction};
 use crate::goal::{GoalDraw, GoalSampler};
-use tree::Tree;
+use crate::tree::Tree;
 
 /// Parameters of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,7 +4,7 @@ use crate::space::Space;
 
 /// States with their parents; several roots are allowed.
 #[derive(Debug, Clone)]
-pub(super) struct Tree {
+pub(crate) struct Tree {
     dimension: usize,
     states: Vec<f64>,
     /// Parent of each node; roots are their own parents.
@@ -14,24 +14,24 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    pub(super) fn new(dimension: usize) -> Self {
+    pub(crate) fn new(dimension: usize) -> Self {
         Self { dimension, states: Vec::new(), parents: Vec::new(), roots: Vec::new() }
     }
 
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.parents.len()
     }
 
-    pub(super) fn state(&self, node: usize) -> &[f64] {
+    pub(crate) fn state(&self, node: usize) -> &[f64] {
         &self.states[node * self.dimension..(node + 1) * self.dimension]
     }
 
     /// The number of the root that a node hangs on.
-    pub(super) fn root(&self, node: usize) -> usize {
+    pub(crate) fn root(&self, node: usize) -> usize {
         self.roots[node] as usize
     }
 
-    pub(super) fn push_root(&mut self, q: &[f64], number: usize) -> usize {
+    pub(crate) fn push_root(&mut self, q: &[f64], number: usize) -> usize {
         let node = self.len();
         self.states.extend_from_slice(q);
         self.parents.push(node as u32);
@@ -39,7 +39,7 @@ impl Tree {
         node
     }
 
-    pub(super) fn push(&mut self, parent: usize, q: &[f64]) -> usize {
+    pub(crate) fn push(&mut self, parent: usize, q: &[f64]) -> usize {
         let node = self.len();
         self.states.extend_from_slice(q);
         self.parents.push(parent as u32);
@@ -48,10 +48,15 @@ impl Tree {
     }
 
     /// The node nearest to `q`; the first of equals. The tree must not be empty.
-    pub(super) fn nearest(&self, space: &Space, q: &[f64]) -> usize {
+    pub(crate) fn nearest(&self, space: &Space, q: &[f64]) -> usize {
+        self.nearest_by(|_, state| space.squared_distance(state, q))
+    }
+
+    /// The node with the smallest value of `distance`, which is given node and state; the first of equals.
+    pub(crate) fn nearest_by(&self, distance: impl Fn(usize, &[f64]) -> f64) -> usize {
         let mut best = (f64::INFINITY, 0);
         for (node, state) in self.states.chunks_exact(self.dimension).enumerate() {
-            let distance = space.squared_distance(state, q);
+            let distance = distance(node, state);
             if distance < best.0 {
                 best = (distance, node);
             }
@@ -60,7 +65,7 @@ impl Tree {
     }
 
     /// States from `node` to its root, both included.
-    pub(super) fn path_to_root(&self, mut node: usize) -> Vec<Vec<f64>> {
+    pub(crate) fn path_to_root(&self, mut node: usize) -> Vec<Vec<f64>> {
         let mut path = vec![self.state(node).to_vec()];
         while self.parents[node] as usize != node {
             node = self.parents[node] as usize;
@@ -70,7 +75,7 @@ impl Tree {
     }
 
     /// Parent and child states of all edges, in order of growth.
-    pub(super) fn edges(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
+    pub(crate) fn edges(&self) -> impl Iterator<Item = (&[f64], &[f64])> {
         let children = (0..self.len()).filter(|&n| self.parents[n] as usize != n);
         children.map(|n| (self.state(self.parents[n] as usize), self.state(n)))
     }
