@@ -5,6 +5,7 @@
 
 pub mod execute;
 pub mod film;
+pub mod picture;
 pub mod record;
 pub mod session;
 pub mod table;
@@ -12,5 +13,6 @@ pub mod view;
 
 pub use execute::{Execution, ExecutionError, execute};
 pub use film::film;
+pub use picture::picture;
 pub use session::{NoPlan, Session, SessionError};
 pub use table::MotionTable;

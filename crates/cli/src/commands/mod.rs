@@ -9,6 +9,7 @@ mod init;
 mod kb;
 mod run;
 mod schema;
+mod view;
 
 use clap::Subcommand;
 
@@ -25,6 +26,7 @@ pub(crate) enum Command {
     Kb(kb::Kb),
     Run(run::Run),
     Schema(schema::Schema),
+    View(view::View),
 }
 
 /// Does what the command line asks for.
@@ -39,5 +41,6 @@ pub(crate) fn run(command: Command) -> Outcome {
         Command::Kb(args) => kb::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Schema(args) => schema::run(&args),
+        Command::View(args) => view::run(&args),
     }
 }

@@ -44,6 +44,8 @@ pub enum Group {
     Path,
     /// Where an object can be grasped.
     Grasp,
+    /// Where fingers press on an object.
+    Contact,
     /// What planners searched.
     Tree,
     /// Coordinate axes.
@@ -52,8 +54,16 @@ pub enum Group {
 
 impl Group {
     /// All groups, in the order they are listed to people.
-    pub const ALL: [Self; 7] =
-        [Self::Robot, Self::Object, Self::Obstacle, Self::Path, Self::Grasp, Self::Tree, Self::Frame];
+    pub const ALL: [Self; 8] = [
+        Self::Robot,
+        Self::Object,
+        Self::Obstacle,
+        Self::Path,
+        Self::Grasp,
+        Self::Contact,
+        Self::Tree,
+        Self::Frame,
+    ];
 
     /// The name people read.
     pub fn title(self) -> &'static str {
@@ -63,6 +73,7 @@ impl Group {
             Self::Obstacle => "Obstacles",
             Self::Path => "Tool path",
             Self::Grasp => "Grasps",
+            Self::Contact => "Contacts",
             Self::Tree => "Search trees",
             Self::Frame => "Frames",
         }
