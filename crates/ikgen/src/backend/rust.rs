@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use crate::ir::{Block, Program, Stmt, Value};
-use crate::kernel::SOURCES;
 use crate::kernel::chain::Frame;
+use crate::kernel::{SIX_SOURCES, SOURCES};
 use crate::run::TrueChain;
 
 /// Choices of the Rust back end.
@@ -39,7 +39,7 @@ pub fn rust_source(program: &Program, chain: &TrueChain, options: &RustOptions) 
     constants(program, chain, &mut out);
     out += API;
     solve(program, &mut out);
-    kernel(options, &mut out);
+    kernel(program, options, &mut out);
     out
 }
 
@@ -65,7 +65,8 @@ fn header(program: &Program, out: &mut String) {
     out.push_str(
         "pub use kernel::chain::{Frame, Link};\nuse kernel::candidate::{Arm, MOST_MISSES, WIDER};\n",
     );
-    out.push_str("use kernel::math::{cos_sin, sqrt};\nuse kernel::roots::*;\n\n");
+    out.push_str("use kernel::math::{cos_sin, sqrt};\nuse kernel::roots::*;\n");
+    out.push_str(if uses_six(&program.body) { "use kernel::six::six_of;\n\n" } else { "\n" });
 }
 
 fn constants(program: &Program, chain: &TrueChain, out: &mut String) {
@@ -230,9 +231,10 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                 *loops += 1;
                 let k = *loops;
                 let args: Vec<String> = match kind {
-                    crate::ir::RootKind::Conic => {
+                    crate::ir::RootKind::Conic | crate::ir::RootKind::Six => {
                         let all: Vec<String> = args.iter().map(|e| p.expr_text(*e)).collect();
-                        vec![format!("[{}]", all.join(", "))]
+                        let by = if *kind == crate::ir::RootKind::Six { "&" } else { "" };
+                        vec![format!("{by}[{}]", all.join(", "))]
                     }
                     _ => args.iter().map(|e| p.expr_text(*e)).collect(),
                 };
@@ -240,14 +242,22 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                 if names.len() < 2 {
                     names.push("_");
                 }
-                let _ = writeln!(out, "{pad}let roots{k} = {}({}, slack);", kind.word(), args.join(", "));
+                let six = *kind == crate::ir::RootKind::Six;
+                let call = if six { "six_of" } else { kind.word() };
+                let _ = writeln!(out, "{pad}let roots{k} = {call}({}, slack);", args.join(", "));
                 let _ = writeln!(out, "{pad}let before{k} = sink.accepted;");
                 let _ = writeln!(out, "{pad}for i in 0..roots{k}.count() {{");
                 let _ = writeln!(
                     out,
                     "{pad}    if roots{k}.free && sink.accepted > before{k} {{\n{pad}        break;\n{pad}    }}"
                 );
-                let _ = writeln!(out, "{pad}    let [{}] = roots{k}.get(i);", names.join(", "));
+                let mut names = names.join(", ");
+                if six {
+                    let pairs: Vec<&str> = names.split(", ").collect();
+                    let pairs: Vec<String> = pairs.chunks(2).map(|p| format!("[{}]", p.join(", "))).collect();
+                    names = pairs.join(", ");
+                }
+                let _ = writeln!(out, "{pad}    let [{names}] = roots{k}.get(i);");
                 block(p, body, depth + 1, loops, out);
                 let _ = writeln!(out, "{pad}}}");
             }
@@ -286,10 +296,18 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
     }
 }
 
+fn uses_six(block: &Block) -> bool {
+    block.iter().any(|stmt| {
+        matches!(stmt, Stmt::ForEach { kind: crate::ir::RootKind::Six, .. })
+            || crate::ir::blocks_of(stmt).into_iter().any(uses_six)
+    })
+}
+
 /// The kernel's files as modules, without their tests.
-fn kernel(options: &RustOptions, out: &mut String) {
+fn kernel(program: &Program, options: &RustOptions, out: &mut String) {
+    let further: &[(&str, &str)] = if uses_six(&program.body) { &SIX_SOURCES } else { &[] };
     out.push_str("/// What every generated solver shares: elementary functions, root finders, check and polish.\nmod kernel {\n");
-    for (name, source) in SOURCES {
+    for (name, source) in SOURCES.iter().chain(further) {
         let code = source.split("#[cfg(test)]").next().unwrap_or(source);
         let code = if options.std { code.to_owned() } else { without_std(code) };
         let _ = writeln!(out, "    pub mod {name} {{");

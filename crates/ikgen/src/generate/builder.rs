@@ -159,6 +159,13 @@ impl Builder {
         self.roots(RootKind::Quadratic, &[a, b, c], &[format!("d{name}")])[0]
     }
 
+    /// For each way in which six revolute joints close a loop; arguments in the order of [`RootKind::Six`].
+    pub fn six<'b>(&'b self, names: &[String], args: &[Scalar<'b>]) -> Vec<Turn<'b>> {
+        let names: Vec<String> = names.iter().flat_map(|n| [format!("c{n}"), format!("s{n}")]).collect();
+        let out = self.roots(RootKind::Six, args, &names);
+        out.chunks(2).map(|pair| Turn { cos: pair[0], sin: pair[1] }).collect()
+    }
+
     /// Branches on whether `value` is smaller than `tolerance` in magnitude. Nothing may follow in the same block.
     pub fn if_zero<'b>(
         &'b self,

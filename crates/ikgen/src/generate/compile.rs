@@ -19,6 +19,9 @@ use crate::run::Solver;
 /// Snaps below this come from the digits of the description: they need a polish, but hide no roots.
 const ROUNDING: f64 = 1e-8;
 
+/// Tolerance within which a chain counts as solved just as it is described.
+const EXACT: f64 = 1e-9;
+
 /// Choices of a compilation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
@@ -130,7 +133,7 @@ fn search(
     let allowed = ladder.into_iter().filter(|t| *t <= options.tolerance.max(1e-9));
     for tolerance in allowed {
         for free in &choices {
-            match attempt(chain, options, free, tolerance, &letters, trace) {
+            match attempt(chain, options, free, tolerance, strategies::SPECIAL, &letters, trace) {
                 Ok(found) if found.lost == 0 => return Ok((found.program, found.class)),
                 Ok(found) => {
                     if best.as_ref().is_none_or(|b| found.lost < b.lost) {
@@ -138,6 +141,23 @@ fn search(
                     }
                     // Other free joints would not be better, a simpler ideal chain might.
                     break;
+                }
+                Err(Some(reason)) => failure = Some(reason),
+                Err(None) => {}
+            }
+        }
+    }
+    if best.is_none() {
+        // As it is described: nothing needs to be ideal.
+        for free in &choices {
+            match attempt(chain, options, free, EXACT, strategies::GENERAL, &letters, trace) {
+                Ok(found) => {
+                    if best.as_ref().is_none_or(|b| found.lost < b.lost) {
+                        best = Some(found);
+                    }
+                    if best.as_ref().is_some_and(|b| b.lost == 0) {
+                        break;
+                    }
                 }
                 Err(Some(reason)) => failure = Some(reason),
                 Err(None) => {}
@@ -164,6 +184,7 @@ fn attempt(
     options: &Options,
     free: &[usize],
     tolerance: f64,
+    strategies: &[Strategy],
     letters: &str,
     trace: &mut Vec<String>,
 ) -> Result<Found, Option<String>> {
@@ -176,7 +197,7 @@ fn attempt(
     let whole = problem.axes.len();
     let problems = if whole < 6 { completions(&problem) } else { vec![problem] };
     for (problem, Strategy { name, unknowns, write }) in
-        problems.iter().flat_map(|p| strategies::ALL.iter().map(move |s| (p, s)))
+        problems.iter().flat_map(|p| strategies.iter().map(move |s| (p, s)))
     {
         if *unknowns != problem.axes.len() {
             continue;
@@ -290,15 +311,9 @@ fn describe(
 }
 
 fn refusal(chain: &SerialChain, letters: &str, choices: &[Vec<usize>]) -> String {
-    let n = chain.variables.len();
-    match n {
-        _ if choices.is_empty() => {
-            format!("{letters}: name the free joints, {} of them", n.saturating_sub(6))
-        }
-        6 => format!(
-            "{letters} without a triple: no three consecutive axes at an end meet, and axes 2-3-4 or 3-4-5 are not parallel"
-        ),
-        7 => format!("{letters} without a triple: no joint can be given so that the rest has one"),
-        _ => format!("{letters}: no strategy for this class yet"),
+    if choices.is_empty() {
+        format!("{letters}: name the free joints, {} of them", chain.variables.len().saturating_sub(6))
+    } else {
+        format!("{letters}: no strategy for this class yet")
     }
 }

@@ -22,11 +22,15 @@ pub enum RootKind {
     Conic,
     /// `quadratic a b c -> t`: `a t^2 + b t + c = 0`.
     Quadratic,
+    /// `six ... -> c s c s c s c s c s c s`: six revolute joints that close a loop; arguments as [`six_of`](crate::kernel::six::six_of)
+    /// takes them.
+    Six,
 }
 
 impl RootKind {
     /// All kinds.
-    pub const ALL: [RootKind; 5] = [Self::Align, Self::Mirror, Self::Circle, Self::Conic, Self::Quadratic];
+    pub const ALL: [RootKind; 6] =
+        [Self::Align, Self::Mirror, Self::Circle, Self::Conic, Self::Quadratic, Self::Six];
 
     /// Its word in the text form.
     pub fn word(self) -> &'static str {
@@ -36,6 +40,7 @@ impl RootKind {
             Self::Circle => "circle",
             Self::Conic => "conic",
             Self::Quadratic => "quadratic",
+            Self::Six => "six",
         }
     }
 
@@ -45,15 +50,20 @@ impl RootKind {
             Self::Align | Self::Mirror => 2,
             Self::Circle | Self::Quadratic => 3,
             Self::Conic => 6,
+            Self::Six => crate::kernel::six::NUMBERS,
         }
     }
 
-    /// Number of names bound: cosine and sine of an angle, or one length.
+    /// Number of names bound: cosine and sine of each angle, or one length.
     pub fn outputs(self) -> usize {
-        if self == Self::Quadratic { 1 } else { 2 }
+        match self {
+            Self::Quadratic => 1,
+            Self::Six => 12,
+            _ => 2,
+        }
     }
 
-    /// The roots for these argument values.
+    /// The roots of one unknown for these argument values; none for [`Six`](Self::Six), which has six.
     pub fn solve(self, x: &[f64], slack: f64) -> crate::kernel::roots::Roots {
         use crate::kernel::roots;
         match self {
@@ -62,6 +72,7 @@ impl RootKind {
             Self::Circle => roots::circle(x[0], x[1], x[2], slack),
             Self::Conic => roots::conic([x[0], x[1], x[2], x[3], x[4], x[5]], slack),
             Self::Quadratic => roots::quadratic(x[0], x[1], x[2], slack),
+            Self::Six => roots::Roots::NONE,
         }
     }
 }

@@ -9,8 +9,12 @@
 
 pub mod candidate;
 pub mod chain;
+pub mod eigen;
 pub mod math;
 pub mod roots;
+pub mod six;
+pub mod vector;
+pub mod waves;
 
 /// Source text of the kernel files, as generated files carry it.
 #[cfg(feature = "generate")]
@@ -19,4 +23,13 @@ pub(crate) const SOURCES: [(&str, &str); 4] = [
     ("roots", include_str!("roots.rs")),
     ("chain", include_str!("chain.rs")),
     ("candidate", include_str!("candidate.rs")),
+];
+
+/// Source text of the further files of programs that solve six joints in general.
+#[cfg(feature = "generate")]
+pub(crate) const SIX_SOURCES: [(&str, &str); 4] = [
+    ("vector", include_str!("vector.rs")),
+    ("eigen", include_str!("eigen.rs")),
+    ("waves", include_str!("waves.rs")),
+    ("six", include_str!("six.rs")),
 ];

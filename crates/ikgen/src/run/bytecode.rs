@@ -2,6 +2,7 @@
 
 use crate::ir::{Binary, Block, Expr, Node, Program, RootKind, Stmt, Unary, Value, Var};
 use crate::kernel::chain::{Frame, MAX_JOINTS};
+use crate::kernel::six::{NUMBERS, six_of};
 
 /// A program that needs more registers than the machine has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -41,6 +42,7 @@ struct Step {
 enum Item {
     Steps { from: u32, to: u32 },
     ForEach { kind: RootKind, args: [u16; 6], out: [u16; 2], outputs: u8, body: Vec<Item> },
+    Six { args: Box<[u16; NUMBERS]>, out: [u16; 12], body: Vec<Item> },
     IfZero { value: u16, tolerance: f64, then: Vec<Item>, otherwise: Vec<Item> },
     Fallback { first: Vec<Item>, otherwise: Vec<Item> },
     Emit { from: u32, to: u32 },
@@ -183,6 +185,15 @@ impl Bytecode {
                         accepted += self.block(body, x, slack, offer);
                     }
                 }
+                Item::Six { args, out, body } => {
+                    let found = six_of(&args.map(|i| x[at(i)]), slack);
+                    for i in 0..found.count() {
+                        for (to, value) in out.iter().zip(found.get(i).into_iter().flatten()) {
+                            x[at(*to)] = value;
+                        }
+                        accepted += self.block(body, x, slack, offer);
+                    }
+                }
                 Item::IfZero { value, tolerance, then, otherwise } => {
                     let zero = x[at(*value)].abs() < *tolerance;
                     accepted += self.block(if zero { then } else { otherwise }, x, slack, offer);
@@ -233,6 +244,18 @@ impl Translator<'_> {
                 Stmt::Let { var, value } => {
                     self.assign(*var, *value, &mut t);
                     None
+                }
+                Stmt::ForEach { kind: RootKind::Six, args, out, body } => {
+                    let mut registers = Box::new([0; NUMBERS]);
+                    for (r, e) in registers.iter_mut().zip(args) {
+                        *r = self.value(*e, &mut t);
+                    }
+                    self.flush(from, &mut items);
+                    let mut names = [0; 12];
+                    for (name, v) in names.iter_mut().zip(out) {
+                        *name = self.name(*v);
+                    }
+                    Some(Item::Six { args: registers, out: names, body: self.block(body) })
                 }
                 Stmt::ForEach { kind, args, out, body } => {
                     let mut registers = [self.constant(0); 6];

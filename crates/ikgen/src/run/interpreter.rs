@@ -1,7 +1,8 @@
 //! The reference interpreter: walks the program as it is written, without any preparation.
 
-use crate::ir::{Block, Expr, Node, Program, Stmt, Value};
+use crate::ir::{Block, Expr, Node, Program, RootKind, Stmt, Value};
 use crate::kernel::chain::{Frame, MAX_JOINTS};
+use crate::kernel::six::six_of;
 
 /// Runs `program` and offers each emitted candidate: `[cos, sin]` or `[length, 0]` of each variable.
 ///
@@ -38,6 +39,17 @@ impl Run<'_> {
                 Stmt::IfZero { value, tolerance, then, otherwise } => {
                     let zero = self.value(*value).abs() < *tolerance;
                     self.block(if zero { then } else { otherwise });
+                }
+                Stmt::ForEach { kind: RootKind::Six, args, out, body } => {
+                    let args: Vec<f64> = args.iter().map(|e| self.value(*e)).collect();
+                    let numbers = args.try_into().expect("validated");
+                    let found = six_of(&numbers, self.slack);
+                    for i in 0..found.count() {
+                        for (var, x) in out.iter().zip(found.get(i).into_iter().flatten()) {
+                            self.vars[var.0 as usize] = x;
+                        }
+                        self.block(body);
+                    }
                 }
                 Stmt::ForEach { kind, args, out, body } => {
                     let args: Vec<f64> = args.iter().map(|e| self.value(*e)).collect();

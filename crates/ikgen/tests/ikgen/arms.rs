@@ -191,7 +191,23 @@ pub(crate) fn wam4() -> SerialChain {
     )
 }
 
+/// Six joints without a triple: a wrist with an offset behind a spherical pair (UFACTORY xArm 6).
+pub(crate) fn xarm6() -> SerialChain {
+    chain(
+        "xarm6",
+        &[
+            (Z, [0.0, 0.0, 0.267]),
+            (Y, [0.0, 0.0, 0.267]),
+            (Y, [0.053, 0.0, 0.5515]),
+            ([0.0, 0.0, -1.0], [0.1305, 0.0, 0.209]),
+            (Y, [0.1305, 0.0, 0.209]),
+            ([0.0, 0.0, -1.0], [0.2065, 0.0, 0.112]),
+        ],
+        [0.2065, 0.0, 0.112],
+    )
+}
+
 /// All of them.
 pub(crate) fn all() -> Vec<SerialChain> {
-    vec![kr6(), skew(), ur5(), ru5(), shoulder(), panda(), iiwa(), fetch(), katana(), wam4()]
+    vec![kr6(), skew(), ur5(), ru5(), shoulder(), panda(), iiwa(), fetch(), katana(), wam4(), xarm6()]
 }

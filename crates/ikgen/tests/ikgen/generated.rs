@@ -29,7 +29,8 @@ fn generated_rust_gives_the_same_solutions() {
         let name = &c.chain().name;
         let core = c.rust_source(&RustOptions { std: false });
         let std = c.rust_source(&RustOptions { std: true });
-        assert!(core.len() < 50_000, "{name}: {} bytes", core.len());
+        let most = if c.class.contains("general,") { 100_000 } else { 50_000 };
+        assert!(core.len() < most, "{name}: {} bytes", core.len());
         std::fs::write(folder.path().join(format!("{name}.rs")), core).unwrap();
         std::fs::write(folder.path().join(format!("{name}_std.rs")), std).unwrap();
         let _ = writeln!(library, "pub mod {name};");

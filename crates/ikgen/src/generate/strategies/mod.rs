@@ -1,5 +1,6 @@
 //! The ways to solve a chain: one file each, one line in [`ALL`].
 
+mod general;
 mod orient;
 mod reach;
 mod spherical_wrist;
@@ -18,8 +19,11 @@ pub struct Strategy {
     pub write: fn(&mut Problem, &Builder) -> Result<String, String>,
 }
 
-/// All strategies, in the order in which they are tried.
-pub const ALL: &[Strategy] = &[
+/// Strategies for special chains, in the order in which they are tried.
+pub const SPECIAL: &[Strategy] = &[
     Strategy { name: "spherical wrist", unknowns: 6, write: spherical_wrist::write },
     Strategy { name: "three parallel axes", unknowns: 6, write: three_parallel::write },
 ];
+
+/// Strategies for any chain, for where no special one fits.
+pub const GENERAL: &[Strategy] = &[Strategy { name: "general", unknowns: 6, write: general::write }];

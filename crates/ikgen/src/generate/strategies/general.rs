@@ -1,0 +1,163 @@
+//! Six revolute joints whose axes lie anyhow.
+//!
+//! The numeric kernel eliminates all but one unknown (see [`crate::kernel::six`]); what is decided here is in which orders.
+//! The axes of real arms are parallel, meet and stand at right angles so often that in most orders the elimination breaks down.
+//! Each is tried on random poses.
+
+use robotc_core::Seed;
+use robotc_core::model::ChainMotion;
+
+use super::reach::Line as Symbolic;
+use crate::generate::builder::{Builder, Move, Scalar, Vector};
+use crate::generate::problem::Problem;
+use crate::kernel::math::cos_sin;
+use crate::kernel::six::{MOST_ORDERS, ORDERS, Order, samples, six};
+use crate::kernel::vector::{Line, Motion};
+use crate::kernel::waves::{MAX_DEGREE, MAX_SAMPLES};
+
+/// Poses on which orders are compared.
+const POSES: usize = 24;
+
+/// Waves below this part of the largest are rounding.
+const ROUNDING: f64 = 1e-8;
+
+pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String> {
+    let given = problem.given;
+    let given_axis = given.map(|(_, a)| a);
+    if problem.axes.iter().chain(&given_axis).any(|a| a.motion != ChainMotion::Revolute) {
+        return Err("a joint slides".into());
+    }
+    let orders = orders(problem);
+    let Some(best) = orders.first() else {
+        return Err("the elimination breaks down in all orders".into());
+    };
+    b.note("the six axes as lines, the goal, and the orders of elimination with their degrees");
+    let mut args: Vec<Scalar<'_>> = Vec::new();
+    for (i, axis) in problem.axes.iter().enumerate() {
+        let mut line = Symbolic::constant(b, axis);
+        if let Some((_, axis)) = given.filter(|(before, _)| *before <= i) {
+            line = line.moved(b, &axis, problem.move_of(b, &axis));
+        }
+        args.extend(line.direction.0);
+        args.extend(line.point.0);
+    }
+    let goal = problem.goal(b);
+    let undo = given.map(|(_, axis)| (problem.move_of(b, &axis).back(), axis));
+    let unit = |i: usize| {
+        let mut e = nalgebra::Vector3::zeros();
+        e[i] = 1.0;
+        b.vector(&e)
+    };
+    let columns = [0, 1, 2].map(|i| {
+        goal.rotate(b, undo.iter().fold(unit(i), |v: Vector<'_>, (step, axis)| step.rotate(b, axis, v)))
+    });
+    for row in 0..3 {
+        args.extend(columns.map(|c| c.0[row]));
+    }
+    let origin = b.vector(&nalgebra::Vector3::zeros());
+    let place = goal.apply(b, undo.iter().fold(origin, |p, (step, axis)| step.apply(b, axis, p)));
+    args.extend(place.0);
+    for k in 0..MOST_ORDERS {
+        let order = orders.get(k).copied().unwrap_or(Order { code: 0, degree: 0 });
+        args.extend([order.code, order.degree].map(|x| b.constant(x as f64)));
+    }
+    let names: Vec<String> = (0..6).map(|i| problem.name(i)).collect();
+    let turns = b.six(&names, &args);
+    let moves: Vec<Move<'_>> = turns.into_iter().map(Move::Turn).collect();
+    problem.emit(b, &moves);
+    Ok(format!("eliminated to degree {}", 2 * best.degree))
+}
+
+/// The orders that find random joint vectors again, best first: those that miss fewest, then those of the lowest degree, then
+/// the most exact. Orders after the first are only asked where it fails, so they differ in the angle that is found first.
+fn orders(problem: &Problem) -> Vec<Order> {
+    let mut rng = Seed::new(0).split("ikgen orders").rng();
+    let trials: Vec<Trial> = (0..POSES).map(|_| trial(problem, &mut rng)).collect();
+    let mut ranked: Vec<(usize, usize, f64, usize)> = Vec::new();
+    for code in 0..ORDERS {
+        let degree = trials.iter().map(|t| degree(&samples(&t.lines, &t.goal, code))).max();
+        let degree = degree.unwrap_or(MAX_DEGREE);
+        if degree == 0 {
+            continue;
+        }
+        let errors: Vec<f64> = trials.iter().map(|t| error(t, Order { code, degree })).collect();
+        let missed = errors.iter().filter(|e| **e >= 1e-6 || e.is_nan()).count();
+        let exactness: f64 = errors.iter().map(|e| libm::log10(e.clamp(1e-15, 1.0))).sum();
+        if missed * 2 < POSES {
+            ranked.push((missed, degree, exactness, code));
+        }
+    }
+    ranked.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)).then(a.3.cmp(&b.3)));
+    let mut chosen: Vec<Order> = Vec::new();
+    for (_, degree, _, code) in ranked {
+        if chosen.len() < MOST_ORDERS && chosen.iter().all(|o| o.code / 2 != code / 2) {
+            chosen.push(Order { code, degree });
+        }
+    }
+    chosen
+}
+
+/// A random joint vector, and the loop that it closes.
+struct Trial {
+    lines: [Line; 6],
+    goal: Motion,
+    turns: [[f64; 2]; 6],
+}
+
+fn trial(problem: &Problem, rng: &mut robotc_core::rng::Rng) -> Trial {
+    let mut turn = || cos_sin(rng.range(-std::f64::consts::PI, std::f64::consts::PI));
+    let line =
+        |a: &crate::generate::facts::Axis| Line { direction: a.direction.into(), point: a.point.into() };
+    let mut lines: Vec<Line> = problem.axes.iter().map(line).collect();
+    if let Some((before, axis)) = problem.given {
+        let (given, turn) = (line(&axis), turn());
+        for later in &mut lines[before..] {
+            *later = given.moved(later, turn);
+        }
+    }
+    let lines: [Line; 6] = lines.try_into().expect("six unknowns");
+    let turns: [[f64; 2]; 6] = std::array::from_fn(|_| turn());
+    let along = |v: [f64; 3], point: bool| {
+        lines
+            .iter()
+            .zip(turns)
+            .rev()
+            .fold(v, |v, (line, turn)| if point { line.carried(v, turn) } else { line.turned(v, turn) })
+    };
+    let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| along(e, false));
+    let rows = [0, 1, 2].map(|i| [x[i], y[i], z[i]]);
+    Trial { goal: Motion { rows, place: along([0.0; 3], true) }, lines, turns }
+}
+
+/// How far the nearest candidate is from the joint vector that the trial was made from.
+fn error(trial: &Trial, order: Order) -> f64 {
+    let found = six(&trial.lines, &trial.goal, &[order], 0.0);
+    let gap = |turns: [[f64; 2]; 6]| {
+        turns
+            .iter()
+            .zip(&trial.turns)
+            .map(|(a, b)| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()))
+            .fold(0.0, f64::max)
+    };
+    (0..found.count()).map(|i| gap(found.get(i))).fold(f64::INFINITY, f64::min)
+}
+
+/// Highest wave that is more than rounding; zero where all of them are.
+fn degree(samples: &[f64; MAX_SAMPLES]) -> usize {
+    let waves: Vec<f64> = (0..=MAX_DEGREE)
+        .map(|k| {
+            let (mut c, mut s) = (0.0, 0.0);
+            for (i, x) in samples.iter().enumerate() {
+                let [cos, sin] = cos_sin(std::f64::consts::TAU * (i * k) as f64 / MAX_SAMPLES as f64);
+                c += x * cos;
+                s += x * sin;
+            }
+            libm::hypot(c, s)
+        })
+        .collect();
+    let largest = waves.iter().fold(0.0, |a: f64, b| a.max(*b));
+    if largest.is_nan() || largest < 1e-25 {
+        return 0;
+    }
+    (0..=MAX_DEGREE).rev().find(|k| waves[*k] > ROUNDING * largest).unwrap_or(0)
+}
