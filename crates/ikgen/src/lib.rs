@@ -42,7 +42,7 @@
 //! | `circle(a, b, d) -> c s { }` | for each angle with `a cos + b sin = d` |
 //! | `conic(a, b, c, d, e, f) -> c s { }` | for each angle with `a cos^2 + b cos sin + c sin^2 + d cos + e sin + f = 0` |
 //! | `six(...) -> c s c s c s c s c s c s { }` | for each way in which six turning joints close a loop; [`kernel::six`] says how |
-| `quadratic(a, b, c) -> t { }` | for each length with `a t^2 + b t + c = 0` |
+//! | `quadratic(a, b, c) -> t { }` | for each length with `a t^2 + b t + c = 0` |
 //! | `zero(e, tolerance) { } else { }` | a *guard*: the first block where `e` is smaller in magnitude |
 //! | `first { } else { }` | the second block only if nothing emitted by the first was accepted |
 //! | `emit angle(c, s) length(x) ...` | a candidate |
