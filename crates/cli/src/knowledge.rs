@@ -24,11 +24,15 @@ pub(crate) struct StoreArgs {
 impl StoreArgs {
     /// Opens the knowledge base; makes an empty one when there is none.
     pub(crate) fn open(&self) -> Outcome<Arc<Store>> {
-        let folder = match self.store.clone().or_else(|| variable("ROBOTC_STORE")) {
-            Some(folder) => folder,
-            None => cache_folder()?.join("robotc"),
-        };
-        Ok(Arc::new(Store::open(&folder)?))
+        Ok(Arc::new(Store::open(&self.folder()?)?))
+    }
+
+    /// The folder of the knowledge base.
+    pub(crate) fn folder(&self) -> Outcome<PathBuf> {
+        match self.store.clone().or_else(|| variable("ROBOTC_STORE")) {
+            Some(folder) => Ok(folder),
+            None => Ok(cache_folder()?.join("robotc")),
+        }
     }
 }
 

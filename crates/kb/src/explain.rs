@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::graph::{Graph, NodeIdx};
 use crate::key::Key;
-use crate::record::{KeyRecord, Part};
+use crate::record::{KeyRecord, Part, Source};
 use crate::resolve::Knowledge;
 use crate::store::{Store, StoreError};
 
@@ -82,7 +82,9 @@ pub fn changes(before: &KeyRecord, now: &KeyRecord) -> Vec<Change> {
         }
     }
     for part in new {
-        let same_name = |o: &&Part| o.source == part.source && o.role == part.role && o.name == part.name;
+        // A parameter is the same wherever its value comes from.
+        let named = |o: &Part| part.source == Source::Parameter || o.name == part.name;
+        let same_name = |o: &&Part| o.source == part.source && o.role == part.role && named(o);
         let values = old.iter().position(same_name).map(|i| old.remove(i)).map(|o| (&o.shown, &part.shown));
         found.push(match values {
             Some((Some(before), Some(now))) => {
@@ -161,7 +163,6 @@ fn fate(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Source;
 
     fn part(source: Source, role: &str, name: &str, digest: u8) -> Part {
         let shown = (source == Source::Parameter).then(|| format!("0.{digest}"));
@@ -191,6 +192,10 @@ mod tests {
             (|r| r.target = Some("x".into()), &["target any -> x"]),
             (|r| r.parts[0].digest = [9; 32], &["limits of joint_3"]),
             (|r| r.parts[1] = part(Source::Parameter, "friction", "", 5), &["parameter friction 0.4 -> 0.5"]),
+            (
+                |r| r.parts[1] = part(Source::Parameter, "friction", "kitchen/mug", 5),
+                &["friction of kitchen/mug 0.4 -> 0.5"],
+            ),
             (|r| r.parts[2].digest = [9; 32], &["convex_parts of robot/link"]),
             (|r| drop(r.parts.remove(0)), &["limits of joint_3 removed"]),
             (

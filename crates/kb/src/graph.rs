@@ -88,6 +88,8 @@ pub struct Node {
     pub inputs: Vec<NodeIdx>,
     /// Values of the parameters, in the order of the kind's table.
     pub parameters: Vec<ParameterValue>,
+    /// The values they would have if none were given.
+    pub defaults: Vec<ParameterValue>,
     #[cfg_attr(not(feature = "build"), expect(dead_code, reason = "only builds read it"))]
     pub(crate) work: Box<dyn Any + Send + Sync>,
 }
@@ -254,10 +256,13 @@ impl<'a> Planner<'a> {
         let inputs = inputs?;
 
         let mut parameters = K::defaults(&inputs);
+        let defaults = parameters.values();
         for (name, value) in self.project.given().kinds.get(K::NAME).into_iter().flatten() {
             parameters.set(K::NAME, name, value)?;
         }
-        let parts = self.parts::<K>(&inputs, &parameters, &edges, label)?;
+        let given = |name: &str| self.project.given().get(K::NAME, name).is_some();
+        let origin = |name: &str| K::default_from(self.project, subject, name).filter(|_| !given(name));
+        let parts = self.parts::<K>(&inputs, &parameters, origin, &edges, label)?;
         let recipe_record = KeyRecord {
             kind: K::NAME.to_owned(),
             format: K::FORMAT,
@@ -276,6 +281,7 @@ impl<'a> Planner<'a> {
                 recipe,
                 inputs: edges.iter().map(|(input, _)| *input).collect(),
                 parameters: parameters.values(),
+                defaults,
                 work: Box::new(Work::<K> { inputs, parameters }),
             });
         }
@@ -288,6 +294,7 @@ impl<'a> Planner<'a> {
         &self,
         inputs: &K::Inputs,
         parameters: &K::Parameters,
+        origin: impl Fn(&str) -> Option<String>,
         edges: &[(NodeIdx, String)],
         label: &str,
     ) -> Result<Vec<Part>, PlanError> {
@@ -299,7 +306,7 @@ impl<'a> Planner<'a> {
             parts.push(Part {
                 source: Source::Parameter,
                 role: info.name.to_owned(),
-                name: String::new(),
+                name: origin(info.name).unwrap_or_default(),
                 shown: Some(parameters::show(&value)),
                 digest: digest(&value).map_err(|_| refused(format!("parameter {}", info.name)))?,
             });

@@ -79,6 +79,12 @@ pub trait Kind: Send + Sync + 'static {
     /// The parameters where nothing is given. They follow from measures of the inputs, computed by + - * / and roots.
     fn defaults(inputs: &Self::Inputs) -> Self::Parameters;
 
+    /// What a default is taken over from as it stands, such as an object for its friction, as people call it; for
+    /// messages.
+    fn default_from(_project: &Project, _subject: &Self::Subject, _parameter: &str) -> Option<String> {
+        None
+    }
+
     /// The stored form; equal artefacts give equal bytes.
     fn encode(artefact: &Self::Artefact) -> Vec<u8>;
 

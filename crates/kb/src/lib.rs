@@ -39,7 +39,7 @@ pub use key::{ContentHash, Key, RecipeId};
 #[cfg(feature = "build")]
 pub use kind::{Build, BuildError, Context};
 pub use kind::{DecodeError, Kind, Portability};
-pub use lock::LockFile;
+pub use lock::{LockFile, Locked};
 pub use parameters::{Given, Parameters};
 pub use project::Project;
 pub use resolve::{Knowledge, LoadError};

@@ -24,7 +24,7 @@ pub struct Part {
     pub source: Source,
     /// What it is, such as `limits`; part of the key.
     pub role: String,
-    /// What people call it, such as the name of a joint; not part of the key, so that renaming rebuilds nothing.
+    /// What people call it, such as the name of a joint, or of the object that a parameter's value comes from; not part of the key, so that renaming rebuilds nothing.
     pub name: String,
     /// The value, when it is short enough to show; not part of the key.
     pub shown: Option<String>,
@@ -33,10 +33,10 @@ pub struct Part {
 }
 
 impl Part {
-    /// `limits of joint_3`, `parameter friction`, `convex_parts of panda/link_2`.
+    /// `limits of joint_3`, `parameter rolls`, `friction of kitchen/mug`, `convex_parts of panda/link_2`.
     pub fn label(&self) -> String {
         match (self.source, self.name.as_str()) {
-            (Source::Parameter, _) => format!("parameter {}", self.role),
+            (Source::Parameter, "") => format!("parameter {}", self.role),
             (_, "") => self.role.clone(),
             (_, name) => format!("{} of {name}", self.role),
         }

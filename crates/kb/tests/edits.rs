@@ -7,7 +7,7 @@ use std::sync::Arc;
 use robotc_core::Pose;
 use robotc_core::model::{DynamicLimits, Geometry, Shape};
 use robotc_core::spec::ParameterValue;
-use robotc_kb::{Graph, LockFile, Store, compile};
+use robotc_kb::{Graph, LockFile, Locked, Store, compile};
 use support::Spec;
 
 /// An edit of the specification, and the artefacts that it rebuilds, as `kind subject`.
@@ -103,7 +103,7 @@ const EDITS: &[Edit] = &[
         name: "friction of the object",
         apply: |s| s.object.friction = 0.8,
         rebuilt: &["grasp_set arm/jaws+tidy/mug"],
-        because: "changed: parameter friction 0.5 -> 0.8",
+        because: "changed: friction of tidy/mug 0.5 -> 0.8",
     },
     Edit {
         name: "grasp parameter",
@@ -218,7 +218,9 @@ fn artefacts_repeat_with_any_number_of_threads_in_any_folder() {
         let store = Arc::new(Store::open(folder.path()).expect("a store"));
         let report = pool.install(|| compile(&graph, &store, &()).expect("it works"));
         assert!(report.complete());
-        LockFile::of(&report.knowledge).to_text()
+        let mut lock = LockFile::default();
+        lock.set("tidy.task.toml", Locked::of(&report.knowledge));
+        lock.to_text()
     };
     let one = lock(1);
     assert_eq!(one, lock(2));

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use robotc_kb::explain::Reason;
 use robotc_kb::kinds::ChainReach;
 use robotc_kb::project::OfArm;
-use robotc_kb::store::{ArchiveError, Finding};
-use robotc_kb::{CompileReport, Graph, Knowledge, LockFile, Project, Store, compile};
+use robotc_kb::store::{ArchiveError, Finding, Rebuilt, Repair};
+use robotc_kb::{CompileReport, Graph, Knowledge, Locked, Project, Store, compile};
 
 fn graph(project: &Project) -> Arc<Graph> {
     Arc::new(Graph::plan(project).expect("a graph"))
@@ -34,7 +34,7 @@ fn what_was_computed_is_found_again() {
     assert_eq!(first.built().count(), first.outcomes.len());
     let second = run(&project, &open(folder.path()));
     assert_eq!(second.built().count(), 0);
-    assert_eq!(LockFile::of(&first.knowledge), LockFile::of(&second.knowledge));
+    assert_eq!(Locked::of(&first.knowledge), Locked::of(&second.knowledge));
     let reach = second.knowledge.load::<ChainReach>(&OfArm(0)).expect("it is there");
     assert!((reach.radius - 0.8).abs() < 1e-9 && (reach.centre_in_base.z - 0.3).abs() < 1e-9, "{reach:?}");
 }
@@ -44,7 +44,7 @@ fn damage_is_found_reported_and_mended() {
     let folder = tempfile::tempdir().expect("a folder");
     let project = support::spec().project();
     let before = run(&project, &open(folder.path()));
-    let lock = LockFile::of(&before.knowledge);
+    let lock = Locked::of(&before.knowledge);
     let count = before.outcomes.len();
     drop(before);
     damage_everything(folder.path());
@@ -59,8 +59,58 @@ fn damage_is_found_reported_and_mended() {
 
     let report = run(&project, &store);
     assert!(report.built().all(|(_, reason)| *reason == Reason::Damaged));
-    assert_eq!(LockFile::of(&report.knowledge), lock);
+    assert_eq!(Locked::of(&report.knowledge), lock);
     assert!(store.verify().expect("the store opens").findings.is_empty());
+}
+
+#[test]
+fn a_lost_or_damaged_database_is_made_again_from_the_files_beside_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let project = support::spec().project();
+    let before = run(&project, &open(folder.path()));
+    let (lock, count) = (Locked::of(&before.knowledge), before.outcomes.len());
+    let listed = before.knowledge.store().list().expect("a list");
+    drop(before);
+
+    // Lost: opening the store is enough.
+    std::fs::remove_file(folder.path().join("robotc.db")).expect("a file");
+    let store = open(folder.path());
+    assert_eq!(store.list().expect("a list"), listed);
+    let again = run(&project, &store);
+    assert_eq!(again.built().count(), 0);
+    assert_eq!(Locked::of(&again.knowledge), lock);
+    let whole = store.verify().expect("the store opens");
+    assert!(whole.findings.is_empty() && whole.leftovers == 0, "{whole:?}");
+    assert!(store.garbage(&[]).expect("it works").artefacts.is_empty(), "all is in use");
+    drop((again, store));
+
+    // Damaged: the error says what to do.
+    std::fs::write(folder.path().join("robotc.db"), [b'?'; 4096]).expect("a file");
+    let error = Store::open(folder.path()).err().expect("it is damaged");
+    assert!(error.to_string().contains("robotc kb rebuild"), "{error}");
+    assert_eq!(Store::rebuild(folder.path()).expect("it works"), Rebuilt { artefacts: count, lost: 0 });
+    assert_eq!(run(&project, &open(folder.path())).built().count(), 0);
+
+    // What is damaged beside it is noticed: that artefact is computed again, and its card written.
+    let card = card(folder.path(), &listed[0].key);
+    std::fs::write(&card, b"nothing").expect("a file");
+    let store = open(folder.path());
+    let findings = store.verify().expect("the store opens").findings;
+    assert_eq!(findings, [Finding::NoCard(listed[0].key)]);
+    let writer = store.writer().expect("free");
+    assert_eq!(store.repair(&writer, &findings).expect("it works"), Repair { cards: 1, forgotten: 0 });
+    assert!(store.verify().expect("the store opens").findings.is_empty());
+    drop((writer, store));
+    std::fs::write(&card, b"nothing").expect("a file");
+    assert_eq!(Store::rebuild(folder.path()).expect("it works"), Rebuilt { artefacts: count - 1, lost: 1 });
+    let mended = run(&project, &open(folder.path()));
+    assert_eq!((mended.built().count(), Locked::of(&mended.knowledge)), (1, lock));
+}
+
+/// The file with the card of a key.
+fn card(folder: &Path, key: &robotc_kb::Key) -> PathBuf {
+    let name = key.to_string();
+    folder.join("cards").join(&name[..2]).join(&name[2..])
 }
 
 /// Flips a bit of every content, in the database and in files, behind the store's back.
@@ -96,7 +146,7 @@ fn archives_are_deterministic_complete_and_verified() {
     let (file, moved) = here.export(None).expect("an archive");
     assert_eq!(moved.artefacts, here.list().expect("a list").len());
     assert_eq!(file, there.export(None).expect("an archive").0, "equal stores give equal archives");
-    let roots = LockFile::of(&report.knowledge).keys();
+    let roots = Locked::of(&report.knowledge).keys();
     assert_eq!(file, here.export(Some(&roots)).expect("an archive").0);
 
     let fresh = open(&folder.path().join("c"));
@@ -126,7 +176,7 @@ fn garbage_is_what_no_subject_uses_and_no_root_needs() {
     let folder = tempfile::tempdir().expect("a folder");
     let store = open(folder.path());
     let mut spec = support::spec();
-    let old = LockFile::of(&run(&spec.project(), &store).knowledge);
+    let old = Locked::of(&run(&spec.project(), &store).knowledge);
     for link in &mut spec.links {
         link.collision = support::cuboid([0.03, 0.03, 0.03], [0.0; 3]);
         if let Some(joint) = &mut link.joint {

@@ -1,10 +1,13 @@
 //! `robotc compile`: from specifications to a knowledge base that has everything they need.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Args;
-use robotc_kb::LockFile;
+use robotc_kb::lock::Difference;
+use robotc_kb::{Graph, LockFile, Locked};
 
 use crate::knowledge::{self, StoreArgs};
 use crate::output::{Failure, Outcome, count, print, say};
@@ -19,7 +22,7 @@ pub(crate) struct Compile {
     /// `*.robot.toml` and `*.task.toml` files
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Fail when robotc.lock would change, and say how
+    /// Fail when robotc.lock would change, and say how; keys are compared before anything is computed
     #[arg(long)]
     locked: bool,
     /// The lock file [default: robotc.lock in the folder of each specification]
@@ -29,52 +32,107 @@ pub(crate) struct Compile {
     store: StoreArgs,
 }
 
+/// A specification to be compiled, and where it is locked.
+struct Item<'a> {
+    file: &'a Path,
+    graph: Arc<Graph>,
+    lock: PathBuf,
+    section: String,
+}
+
 pub(crate) fn run(args: &Compile) -> Outcome {
     let store = args.store.open()?;
-    let mut unlocked = 0;
+    let mut items = Vec::new();
     for file in &args.files {
-        let start = Instant::now();
-        let project = crate::input::project(file)?;
-        let graph = knowledge::plan(&project)?;
-        let report = knowledge::compile(&graph, &store)?;
-        let (all, built) = (graph.nodes().len(), report.built().count());
-        let seconds = start.elapsed().as_secs_f64();
-        let done = if built == 0 { "all up to date".to_owned() } else { format!("{built} computed") };
-        print(&format!("{}: {}, {done}, {seconds:.2} s", file.display(), count(all, "artefact")));
-
-        let path = match &args.lock {
+        let lock = match &args.lock {
             Some(path) => path.clone(),
             None => file.parent().unwrap_or(Path::new("")).join("robotc.lock"),
         };
-        let before = read_lock(&path)?;
-        let now = LockFile::of(&report.knowledge);
-        let changes = before.changes(&now);
-        if args.locked {
-            unlocked += changes.len();
-            for change in &changes {
-                let hash = |known: Option<robotc_kb::resolve::Known>| match known {
-                    None => "nothing".to_owned(),
-                    Some(known) => format!("key {} content {}", known.key.short(), known.content.short()),
-                };
-                let (before, now) = (hash(change.before), hash(change.now));
-                say(&format!("{}: {} {}: {before} -> {now}", path.display(), change.kind, change.subject));
-            }
-        } else if !changes.is_empty() {
-            write_whole(&path, before.updated(&now).to_text().as_bytes())?;
-        }
+        let section = section_name(&lock, file)?;
+        let graph = knowledge::plan(&crate::input::project(file)?)?;
+        items.push(Item { file, graph, lock, section });
     }
-    if unlocked > 0 {
-        let lines = count(unlocked, "line");
-        return Err(Failure::Input(format!("the lock file is out of date: {lines} would change")));
+    if args.locked {
+        accept(&items, |i, locked| locked.differences(&items[i].graph))?;
+    }
+    let mut computed = Vec::new();
+    for item in &items {
+        let start = Instant::now();
+        let report = knowledge::compile(&item.graph, &store)?;
+        let (all, built) = (item.graph.nodes().len(), report.built().count());
+        let seconds = start.elapsed().as_secs_f64();
+        let done = if built == 0 { "all up to date".to_owned() } else { format!("{built} computed") };
+        print(&format!("{}: {}, {done}, {seconds:.2} s", item.file.display(), count(all, "artefact")));
+        let now = Locked::of(&report.knowledge);
+        if !args.locked {
+            write_section(item, &now)?;
+        }
+        computed.push(now);
+    }
+    if args.locked {
+        accept(&items, |i, locked| locked.changes(&computed[i]))?;
     }
     Ok(())
+}
+
+/// Fails when `differ` finds a difference between any specification (by position) and its section, and says which.
+fn accept(items: &[Item<'_>], differ: impl Fn(usize, &Locked) -> Vec<Difference>) -> Outcome {
+    let mut differences = Vec::new();
+    for lock in items.iter().map(|item| item.lock.as_path()).collect::<BTreeSet<&Path>>() {
+        for section in read_lock(lock)?.prune(|section| exists(lock, section)) {
+            differences.push(format!("{}: {section}: the specification is gone", lock.display()));
+        }
+    }
+    for (i, item) in items.iter().enumerate() {
+        let file = read_lock(&item.lock)?;
+        let found = differ(i, file.section(&item.section).unwrap_or(&Locked::default()));
+        let named = |d: &Difference| format!("{}: {}: {d}", item.lock.display(), item.section);
+        differences.extend(found.iter().map(named));
+    }
+    differences.iter().for_each(|line| say(line));
+    match differences.len() {
+        0 => Ok(()),
+        n => Err(Failure::Input(format!("the lock file is out of date: {}", count(n, "difference")))),
+    }
+}
+
+/// Brings the section of a specification up to date, and drops those of specifications that are gone.
+fn write_section(item: &Item<'_>, now: &Locked) -> Outcome {
+    let before = read_lock(&item.lock)?;
+    let mut after = before.clone();
+    after.prune(|section| exists(&item.lock, section));
+    after.set(&item.section, now.clone());
+    if after == before {
+        return Ok(());
+    }
+    write_whole(&item.lock, after.to_text().as_bytes())?;
+    let verb = if before == LockFile::default() { "written" } else { "updated" };
+    print(&format!("{}: {verb}", item.lock.display()));
+    Ok(())
+}
+
+/// How a lock file calls a specification: by its path from the lock file's folder, with `/` between names.
+fn section_name(lock: &Path, file: &Path) -> Outcome<String> {
+    let (lock, file) = (std::path::absolute(lock)?, std::path::absolute(file)?);
+    let folder: Vec<_> = lock.parent().unwrap_or(Path::new("")).components().collect();
+    let names: Vec<_> = file.components().collect();
+    let shared = folder.iter().zip(&names).take_while(|(a, b)| a == b).count();
+    let up = std::iter::repeat_n("..".to_owned(), folder.len() - shared);
+    let down = names[shared..].iter().map(|name| name.as_os_str().to_string_lossy().into_owned());
+    Ok(up.chain(down).collect::<Vec<_>>().join("/"))
+}
+
+/// Whether the specification of a section is there.
+fn exists(lock: &Path, section: &str) -> bool {
+    lock.parent().unwrap_or(Path::new("")).join(section).exists()
 }
 
 /// Reads a lock file; an empty one where there is no file.
 pub(super) fn read_lock(path: &Path) -> Outcome<LockFile> {
     match std::fs::read_to_string(path) {
         Ok(text) => {
-            LockFile::parse(&text).map_err(|error| Failure::Input(format!("{}: {error}", path.display())))
+            let wrong = |error| format!("{}: {error}; delete it and compile again", path.display());
+            LockFile::parse(&text).map_err(|error| Failure::Input(wrong(error)))
         }
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(LockFile::default()),
         Err(error) => Err(Failure::Environment(format!("{}: {error}", path.display()))),

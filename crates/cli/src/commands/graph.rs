@@ -18,6 +18,9 @@ pub(crate) struct Graph {
     /// In the language of Graphviz
     #[arg(long)]
     dot: bool,
+    /// Show all parameters, also those that have their default values
+    #[arg(long)]
+    parameters: bool,
 }
 
 pub(crate) fn run(args: &Graph) -> Outcome {
@@ -28,8 +31,11 @@ pub(crate) fn run(args: &Graph) -> Outcome {
     }
     for node in graph.nodes() {
         print(&format!("{} {} ({})", node.kind_name(), node.subjects.join(", "), node.recipe.short()));
-        for (info, value) in node.kind.info().parameters.iter().zip(&node.parameters) {
-            print(&format!("    {} = {}", info.name, robotc_kb::parameters::show(value)));
+        let table = node.kind.info().parameters;
+        for (info, (value, default)) in table.iter().zip(node.parameters.iter().zip(&node.defaults)) {
+            if args.parameters || value != default {
+                print(&format!("    {} = {}", info.name, robotc_kb::parameters::show(value)));
+            }
         }
         for input in &node.inputs {
             print(&format!("    from {}", graph.node(*input).title()));

@@ -1,10 +1,10 @@
 //! `robotc kb`: looking into the knowledge base and looking after it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use robotc_kb::record::Source;
-use robotc_kb::store::{ArchiveError, Finding, Listed};
+use robotc_kb::store::{ArchiveError, Finding, Listed, Rebuilt};
 use robotc_kb::{Key, Store, kinds};
 
 use super::compile::{read_lock, write_whole};
@@ -32,7 +32,7 @@ enum KbCommand {
     },
     /// Show an artefact: what is in it, what it was computed from, and why
     Show {
-        /// The first digits of its key, or a part of its subject
+        /// The first digits of its key, or a part of its subject; for a kind, its artefacts are listed
         artefact: String,
     },
     /// Check every artefact against its key and its hash
@@ -41,6 +41,8 @@ enum KbCommand {
         #[arg(long)]
         repair: bool,
     },
+    /// Make the database again from the files beside it, when it is damaged
+    Rebuild,
     /// Remove what no specification used last
     Gc {
         /// Only say what would be removed
@@ -66,13 +68,15 @@ enum KbCommand {
 }
 
 pub(crate) fn run(args: &Kb) -> Outcome {
-    let store = args.store.open()?;
+    let open = || args.store.open();
     match &args.command {
-        KbCommand::Ls { filter } => list(&store, filter.as_deref().unwrap_or_default()),
-        KbCommand::Show { artefact } => show(&store, artefact),
-        KbCommand::Verify { repair } => verify(&store, *repair),
-        KbCommand::Gc { dry_run, keep } => collect(&store, *dry_run, keep),
+        KbCommand::Ls { filter } => list(&*open()?, filter.as_deref().unwrap_or_default()),
+        KbCommand::Show { artefact } => show(&*open()?, artefact),
+        KbCommand::Verify { repair } => verify(&*open()?, *repair),
+        KbCommand::Rebuild => rebuild(&args.store.folder()?),
+        KbCommand::Gc { dry_run, keep } => collect(&*open()?, *dry_run, keep),
         KbCommand::Export { file, lock } => {
+            let store = open()?;
             let roots = lock.as_deref().map(read_lock).transpose()?.map(|lock| lock.keys());
             let (bytes, moved) = store.export(roots.as_deref())?;
             write_whole(file, &bytes)?;
@@ -85,6 +89,7 @@ pub(crate) fn run(args: &Kb) -> Outcome {
             Ok(())
         }
         KbCommand::Import { file } => {
+            let store = open()?;
             let bytes =
                 std::fs::read(file).map_err(|e| Failure::Environment(format!("{}: {e}", file.display())))?;
             let moved = store.import(&store.writer()?, &bytes).map_err(|error| match error {
@@ -113,9 +118,12 @@ fn show(store: &Store, wanted: &str) -> Outcome {
         true => all.iter().filter(|a| a.subject.contains(wanted)).collect(),
         false => by_key,
     };
+    if found.is_empty() && kinds::find(wanted).is_some() {
+        return list(store, wanted);
+    }
     if found.is_empty() {
         return Err(Failure::Input(format!(
-            "no artefact has key or subject `{wanted}`; `robotc kb ls` lists them"
+            "no artefact has key, subject or kind `{wanted}`; `robotc kb ls` lists them"
         )));
     }
     for (i, artefact) in found.iter().enumerate() {
@@ -159,7 +167,9 @@ fn verify(store: &Store, repair: bool) -> Outcome {
     let result = store.verify()?;
     for finding in &result.findings {
         let text = match finding {
-            Finding::Database(text) => format!("the database is damaged: {text}"),
+            Finding::Database(text) => {
+                format!("the database is damaged, `robotc kb rebuild` makes it again: {text}")
+            }
             Finding::Missing(key, content) => {
                 format!("{}: content {} is missing", key.short(), content.short())
             }
@@ -168,6 +178,9 @@ fn verify(store: &Store, repair: bool) -> Outcome {
             }
             Finding::WrongKey(key) => format!("{}: what it is made of gives another key", key.short()),
             Finding::Undecodable(key, why) => format!("{}: {why}", key.short()),
+            Finding::NoCard(key) => {
+                format!("{}: its card is missing or damaged; it is whole in the database", key.short())
+            }
         };
         say(&text);
     }
@@ -186,12 +199,22 @@ fn verify(store: &Store, repair: bool) -> Outcome {
             "{problems} in {checked}; `robotc kb verify --repair` forgets what is damaged"
         )));
     }
-    let keys: Vec<Key> = result.findings.iter().filter_map(Finding::key).collect();
-    store.forget(&store.writer()?, &keys)?;
-    print(&format!(
-        "{problems} in {checked}: {} forgotten, compile to make them again",
-        count(keys.len(), "artefact")
-    ));
+    let done = store.repair(&store.writer()?, &result.findings)?;
+    let (cards, forgotten) = (count(done.cards, "card"), count(done.forgotten, "artefact"));
+    print(&format!("{problems} in {checked}: {cards} written again, {forgotten} forgotten"));
+    if done.forgotten > 0 {
+        print("compiling makes forgotten artefacts again");
+    }
+    Ok(())
+}
+
+fn rebuild(folder: &Path) -> Outcome {
+    let Rebuilt { artefacts, lost } = Store::rebuild(folder)?;
+    let lost = match lost {
+        0 => String::new(),
+        n => format!(", {} damaged", count(n, "card")),
+    };
+    print(&format!("the database was made again: {}{lost}", count(artefacts, "artefact")));
     Ok(())
 }
 

@@ -3,6 +3,7 @@
 use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use super::StoreError;
 use crate::key::ContentHash;
@@ -12,8 +13,12 @@ pub(super) const INLINE_BELOW: usize = 64 * 1024;
 
 /// Where a content has its file.
 pub(super) fn path(folder: &Path, content: &ContentHash) -> PathBuf {
-    let name = content.to_string();
-    folder.join("blobs").join(&name[..2]).join(&name[2..])
+    on_shelf(folder, "blobs", &content.to_string())
+}
+
+/// Where a file named by a hash is: on the shelf of the first two digits.
+pub(super) fn on_shelf(folder: &Path, shelves: &str, name: &str) -> PathBuf {
+    folder.join(shelves).join(&name[..2]).join(&name[2..])
 }
 
 /// Writes a content that needs a file; returns whether it belongs into the database instead.
@@ -21,20 +26,25 @@ pub(super) fn write(folder: &Path, content: &ContentHash, bytes: &[u8]) -> Resul
     if bytes.len() < INLINE_BELOW {
         return Ok(true);
     }
-    let target = path(folder, content);
-    let parent = target.parent().expect("a content's file is in a folder").to_owned();
+    write_file(folder, &path(folder, content), bytes)?;
+    Ok(false)
+}
+
+/// Writes a file on a shelf of the store, whole or not at all.
+pub(super) fn write_file(folder: &Path, target: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+    let shelf = target.parent().expect("a file of the store is on a shelf");
+    let shelves = shelf.parent().expect("a shelf is in a folder of the store");
     let write = || -> std::io::Result<()> {
-        fs::create_dir_all(&parent)?;
+        fs::create_dir_all(shelf)?;
         let mut file = tempfile::NamedTempFile::new_in(folder.join("temporary"))?;
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
-        file.persist(&target)?;
+        file.persist(target)?;
         // The names must be on the disk before the database refers to them.
-        sync_folder(&parent)?;
-        sync_folder(&folder.join("blobs"))
+        sync_folder(shelf)?;
+        sync_folder(shelves)
     };
-    write().map_err(|error| StoreError::Io { path: target.clone(), error })?;
-    Ok(false)
+    write().map_err(|error| StoreError::Io { path: target.to_owned(), error })
 }
 
 /// Reads a content's file.
@@ -46,10 +56,14 @@ pub(super) fn read(folder: &Path, content: &ContentHash) -> Result<Vec<u8>, Stor
     })
 }
 
-/// All files under `blobs`, with the content each is named by, sorted; `None` for names that no content has.
-pub(super) fn files(folder: &Path) -> Result<Vec<(PathBuf, Option<ContentHash>)>, StoreError> {
+/// All files on the shelves of a folder (`blobs` or `cards`), with the hash each is named by, sorted; `None` for names that
+/// are no hash.
+pub(super) fn files<H: FromStr>(
+    folder: &Path,
+    shelves: &str,
+) -> Result<Vec<(PathBuf, Option<H>)>, StoreError> {
     let mut found = Vec::new();
-    for shelf in entries(&folder.join("blobs"))? {
+    for shelf in entries(&folder.join(shelves))? {
         let prefix = shelf.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if !shelf.is_dir() {
             found.push((shelf, None));
@@ -57,8 +71,8 @@ pub(super) fn files(folder: &Path) -> Result<Vec<(PathBuf, Option<ContentHash>)>
         }
         for file in entries(&shelf)? {
             let rest = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let content = format!("{prefix}{rest}").parse().ok();
-            found.push((file, content));
+            let name = format!("{prefix}{rest}").parse().ok();
+            found.push((file, name));
         }
     }
     Ok(found)
@@ -80,12 +94,12 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
 }
 
 #[cfg(unix)]
-fn sync_folder(folder: &Path) -> std::io::Result<()> {
+pub(super) fn sync_folder(folder: &Path) -> std::io::Result<()> {
     File::open(folder)?.sync_all()
 }
 
 #[cfg(not(unix))]
-fn sync_folder(_folder: &Path) -> std::io::Result<()> {
+pub(super) fn sync_folder(_folder: &Path) -> std::io::Result<()> {
     // Elsewhere a folder cannot be opened as a file, and a rename is written through by the file system's journal.
     Ok(())
 }

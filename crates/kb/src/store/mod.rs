@@ -5,17 +5,22 @@
 //! ```text
 //! robotc.db            SQLite: keys, records, contents below 64 KiB
 //! blobs/ab/cdef...     larger contents, each named by its hash
+//! cards/ab/cdef...     what the database says of an artefact, named by its key
 //! temporary/           contents being written
 //! writer               locked by the process that builds, collects garbage or imports
 //! ```
 //!
 //! It is whole after a crash at any moment: a content is written to a temporary file, flushed, renamed to its name and only
-//! then recorded in one transaction. What a crash can leave behind is a file that nothing refers to. Everything read is
-//! compared with the hash that names it. Put it on a local disk: SQLite's write-ahead log needs one.
+//! then recorded, on its card and in one transaction. What a crash can leave behind is a file that nothing refers to.
+//! Everything read is compared with the hash that names it. A database that is lost is made again from the other files when
+//! the store is opened; [`Store::rebuild`] does so for one that is damaged. Put it on a local disk: SQLite's write-ahead
+//! log needs one.
 
 mod archive;
 mod blobs;
+mod cards;
 mod garbage;
+mod rebuild;
 mod schema;
 mod verify;
 
@@ -23,12 +28,13 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard};
 
-use rusqlite::{Connection, OptionalExtension, params};
+use rusqlite::{Connection, ErrorCode, OptionalExtension, Transaction, params};
 use thiserror::Error;
 
 pub use archive::{ArchiveError, Transfer};
 pub use garbage::Garbage;
-pub use verify::{Finding, Verification};
+pub use rebuild::Rebuilt;
+pub use verify::{Finding, Repair, Verification};
 
 use crate::key::{ContentHash, Key};
 use crate::kind::DecodeError;
@@ -47,7 +53,10 @@ pub enum StoreError {
     },
     /// SQLite failed.
     #[error("the store's database: {0}")]
-    Database(#[from] rusqlite::Error),
+    Database(rusqlite::Error),
+    /// The database is damaged.
+    #[error("the store's database is damaged ({0}); `robotc kb rebuild` makes it again")]
+    DamagedDatabase(rusqlite::Error),
     /// The folder holds a store of another version of this program.
     #[error("the store has format {found}, this program reads {expected}; use another folder for the store")]
     Format {
@@ -85,6 +94,15 @@ pub enum StoreError {
         /// What was computed.
         now: ContentHash,
     },
+}
+
+impl From<rusqlite::Error> for StoreError {
+    fn from(error: rusqlite::Error) -> Self {
+        match error.sqlite_error_code() {
+            Some(ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase) => Self::DamagedDatabase(error),
+            _ => Self::Database(error),
+        }
+    }
 }
 
 /// An artefact as the store lists it.
@@ -133,14 +151,28 @@ pub struct Writer {
 }
 
 impl Store {
-    /// Opens the store in a folder; makes an empty one when there is none.
+    /// Opens the store in a folder; makes an empty one when there is none. When only its database is gone, that is made
+    /// again from the other files.
     pub fn open(folder: &Path) -> Result<Self, StoreError> {
-        for part in ["blobs", "temporary"] {
+        Self::make_folders(folder)?;
+        let database = folder.join(schema::FILE);
+        if !database.exists() && !blobs::files::<Key>(folder, cards::SHELVES)?.is_empty() {
+            let _writer = Self::wait_for_writer(folder)?;
+            // Another process may have been first.
+            if !database.exists() {
+                rebuild::rebuild(folder)?;
+            }
+        }
+        let connection = schema::open(&database)?;
+        Ok(Self { folder: folder.to_owned(), connection: Mutex::new(connection) })
+    }
+
+    fn make_folders(folder: &Path) -> Result<(), StoreError> {
+        for part in ["blobs", cards::SHELVES, "temporary"] {
             let path = folder.join(part);
             std::fs::create_dir_all(&path).map_err(|error| StoreError::Io { path, error })?;
         }
-        let connection = schema::open(&folder.join("robotc.db"))?;
-        Ok(Self { folder: folder.to_owned(), connection: Mutex::new(connection) })
+        Ok(())
     }
 
     /// The folder.
@@ -150,7 +182,7 @@ impl Store {
 
     /// The right to write, or `None` when another process has it.
     pub fn try_writer(&self) -> Result<Option<Writer>, StoreError> {
-        let (path, file) = self.lock_file()?;
+        let (path, file) = Self::lock_file(&self.folder)?;
         match file.try_lock() {
             Ok(()) => Ok(Some(Writer { _lock: file })),
             Err(std::fs::TryLockError::WouldBlock) => Ok(None),
@@ -161,13 +193,17 @@ impl Store {
     /// The right to write; waits while another process has it. The lock ends with the process that holds it, however
     /// that ends.
     pub fn writer(&self) -> Result<Writer, StoreError> {
-        let (path, file) = self.lock_file()?;
+        Self::wait_for_writer(&self.folder)
+    }
+
+    fn wait_for_writer(folder: &Path) -> Result<Writer, StoreError> {
+        let (path, file) = Self::lock_file(folder)?;
         file.lock().map_err(|error| StoreError::Io { path, error })?;
         Ok(Writer { _lock: file })
     }
 
-    fn lock_file(&self) -> Result<(PathBuf, File), StoreError> {
-        let path = self.folder.join("writer");
+    fn lock_file(folder: &Path) -> Result<(PathBuf, File), StoreError> {
+        let path = folder.join("writer");
         let file = File::options().create(true).truncate(false).write(true).open(&path);
         match file {
             Ok(file) => Ok((path, file)),
@@ -249,26 +285,10 @@ impl Store {
             return Err(StoreError::NotRepeatable { kind, key, before, now: content });
         }
         let inline = blobs::write(&self.folder, &content, artefact.bytes)?;
+        cards::write(&self.folder, &cards::Card::of(artefact, &content, inline))?;
         let mut connection = self.connection();
         let transaction = connection.transaction()?;
-        transaction
-            .prepare_cached("INSERT OR REPLACE INTO blob (content, bytes) VALUES (?1, ?2)")?
-            .execute(params![content.as_bytes(), inline.then_some(artefact.bytes)])?;
-        transaction
-            .prepare_cached(
-                "INSERT OR REPLACE INTO artefact (key, kind, subject, content, size, record, reason, provenance)
-                 VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
-            )?
-            .execute(params![
-                key.as_bytes(),
-                artefact.record.kind,
-                artefact.subject,
-                content.as_bytes(),
-                artefact.bytes.len() as i64,
-                artefact.record.encode(),
-                artefact.reason,
-                artefact.provenance,
-            ])?;
+        insert(&transaction, artefact, &key, &content, inline)?;
         transaction.commit()?;
         Ok(content)
     }
@@ -292,4 +312,33 @@ impl Store {
         // A panic of another thread cannot leave a transaction open: they roll back when dropped.
         self.connection.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
+}
+
+/// Records an artefact; `inline` puts its bytes into the database.
+fn insert(
+    transaction: &Transaction<'_>,
+    artefact: &NewArtefact<'_>,
+    key: &Key,
+    content: &ContentHash,
+    inline: bool,
+) -> Result<(), StoreError> {
+    transaction
+        .prepare_cached("INSERT OR REPLACE INTO blob (content, bytes) VALUES (?1, ?2)")?
+        .execute(params![content.as_bytes(), inline.then_some(artefact.bytes)])?;
+    transaction
+        .prepare_cached(
+            "INSERT OR REPLACE INTO artefact (key, kind, subject, content, size, record, reason, provenance)
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+        )?
+        .execute(params![
+            key.as_bytes(),
+            artefact.record.kind,
+            artefact.subject,
+            content.as_bytes(),
+            artefact.bytes.len() as i64,
+            artefact.record.encode(),
+            artefact.reason,
+            artefact.provenance,
+        ])?;
+    Ok(())
 }

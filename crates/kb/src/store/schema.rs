@@ -6,6 +6,9 @@ use rusqlite::{Connection, TransactionBehavior};
 
 use super::StoreError;
 
+/// Name of the database in the folder of the store.
+pub(super) const FILE: &str = "robotc.db";
+
 /// Raised when the tables change; a store of another format is refused, never converted: it can be computed again.
 const FORMAT: i64 = 1;
 

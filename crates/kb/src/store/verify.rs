@@ -1,10 +1,10 @@
 //! Checking a whole store.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rusqlite::params;
 
-use super::{Store, StoreError, Writer, blobs};
+use super::{NewArtefact, Store, StoreError, Writer, blobs, cards};
 use crate::key::{ContentHash, Key};
 use crate::record::KeyRecord;
 
@@ -21,6 +21,8 @@ pub enum Finding {
     WrongKey(Key),
     /// The bytes are whole but their kind does not accept them; the text says why.
     Undecodable(Key, String),
+    /// The artefact is whole, but has no whole card from which the database could be made again.
+    NoCard(Key),
 }
 
 impl Finding {
@@ -31,7 +33,8 @@ impl Finding {
             Self::Missing(key, _)
             | Self::Damaged(key, _)
             | Self::WrongKey(key)
-            | Self::Undecodable(key, _) => Some(*key),
+            | Self::Undecodable(key, _)
+            | Self::NoCard(key) => Some(*key),
         }
     }
 }
@@ -47,6 +50,15 @@ pub struct Verification {
     pub bytes: u64,
     /// Files that nothing refers to: harmless, left by a crash, removed by a collection of garbage.
     pub leftovers: usize,
+}
+
+/// What a repair did.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Repair {
+    /// Number of cards written again.
+    pub cards: usize,
+    /// Number of artefacts forgotten.
+    pub forgotten: usize,
 }
 
 impl Store {
@@ -83,14 +95,49 @@ impl Store {
             let kind = crate::kinds::find(&record.kind).filter(|kind| kind.info().format == record.format);
             if let Some(Err(error)) = kind.map(|kind| kind.decode(&bytes)) {
                 result.findings.push(Finding::Undecodable(key, error.to_string()));
+            } else if cards::read(&self.folder, &key).is_none_or(|card| card.content() != content) {
+                result.findings.push(Finding::NoCard(key));
             }
         }
         result.leftovers = self.leftovers()?.len();
         Ok(result)
     }
 
-    /// Forgets artefacts that cannot be used, so that the next compilation makes them again.
-    pub fn forget(&self, _writer: &Writer, keys: &[Key]) -> Result<(), StoreError> {
+    /// Mends what [`verify`](Self::verify) found: cards are written again, and artefacts that cannot be used are forgotten,
+    /// so that the next compilation makes them again. A damaged database is left to [`rebuild`](Self::rebuild).
+    pub fn repair(&self, _writer: &Writer, findings: &[Finding]) -> Result<Repair, StoreError> {
+        let mut done = Repair::default();
+        let mut unusable = Vec::new();
+        for finding in findings {
+            match finding {
+                Finding::NoCard(key) => {
+                    self.write_card(key)?;
+                    done.cards += 1;
+                }
+                other => unusable.extend(other.key()),
+            }
+        }
+        self.forget(&unusable)?;
+        done.forgotten = unusable.len();
+        Ok(done)
+    }
+
+    fn write_card(&self, key: &Key) -> Result<(), StoreError> {
+        let listed = self.list()?.into_iter().find(|artefact| artefact.key == *key);
+        let (Some(listed), Some(record)) = (listed, self.record(key)?) else { return Ok(()) };
+        let bytes = self.read(&listed.content)?;
+        let artefact = NewArtefact {
+            record: &record,
+            subject: &listed.subject,
+            reason: &listed.reason,
+            provenance: &listed.provenance,
+            bytes: &bytes,
+        };
+        let inline = bytes.len() < blobs::INLINE_BELOW;
+        cards::write(&self.folder, &cards::Card::of(&artefact, &listed.content, inline))
+    }
+
+    fn forget(&self, keys: &[Key]) -> Result<(), StoreError> {
         let mut connection = self.connection();
         let transaction = connection.transaction()?;
         for key in keys {
@@ -126,18 +173,20 @@ impl Store {
 
     /// Files of the store that its database does not refer to.
     pub(super) fn leftovers(&self) -> Result<Vec<std::path::PathBuf>, StoreError> {
-        let named: std::collections::BTreeSet<ContentHash> = {
+        let named: BTreeSet<ContentHash> = {
             let connection = self.connection();
             let mut query = connection.prepare("SELECT content FROM blob WHERE bytes IS NULL")?;
             let rows = query.query_map([], |row| row.get(0).map(ContentHash::from_bytes))?;
             rows.collect::<Result<_, _>>()?
         };
         let mut found = blobs::temporary(&self.folder)?;
-        for (path, content) in blobs::files(&self.folder)? {
-            if content.is_none_or(|content| !named.contains(&content)) {
-                found.push(path);
-            }
-        }
+        let stray = |content: &Option<ContentHash>| content.is_none_or(|content| !named.contains(&content));
+        let contents = blobs::files(&self.folder, "blobs")?;
+        found.extend(contents.into_iter().filter(|(_, content)| stray(content)).map(|(path, _)| path));
+        let keys: BTreeSet<Key> = self.list()?.into_iter().map(|artefact| artefact.key).collect();
+        let stray = |key: &Option<Key>| key.is_none_or(|key| !keys.contains(&key));
+        let cards = blobs::files(&self.folder, cards::SHELVES)?;
+        found.extend(cards.into_iter().filter(|(_, key)| stray(key)).map(|(path, _)| path));
         Ok(found)
     }
 }

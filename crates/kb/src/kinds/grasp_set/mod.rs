@@ -26,7 +26,7 @@ use crate::graph::{Dep, PlanError, Planner};
 use crate::kind::{DecodeError, Kind, Portability};
 use crate::kinds::ConvexParts;
 use crate::parameters::round_step;
-use crate::project::{OfGripperAndObject, OfShape};
+use crate::project::{OfGripperAndObject, OfObject, OfShape, Project, Subject};
 use crate::projection::{Mechanism, Shapes};
 use crate::record::Parts;
 
@@ -130,6 +130,10 @@ impl Kind for GraspSet {
             parts.add("preshape", &preshape.name, &preshape.values);
         }
         object.key_parts("object", parts);
+    }
+
+    fn default_from(project: &Project, subject: &OfGripperAndObject, parameter: &str) -> Option<String> {
+        (parameter == "friction").then(|| OfObject(subject.object).label(project))
     }
 
     fn defaults(inputs: &Inputs) -> GraspParameters {
