@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::ir::{Block, Program, Stmt, Value};
 use crate::kernel::chain::Frame;
-use crate::kernel::{SIX_SOURCES, SOURCES};
+use crate::kernel::{CORE_SQRT, PLATFORM_SQRT, SIX_SOURCES, SOURCES};
 use crate::run::TrueChain;
 
 /// Choices of the Rust back end.
@@ -13,21 +13,6 @@ pub struct RustOptions {
     /// Use the square root of `std` instead of the file's own: faster, but then the file needs `std`.
     pub std: bool,
 }
-
-/// The square root that takes nothing from `std`.
-const OWN_SQRT: &str = "\
-pub fn sqrt(x: f64) -> f64 {
-    if !(x > 1e-300) {
-        return 0.0;
-    }
-    // Halving the exponent is right within 4 %; four steps of Heron's rule are then exact to the last bit or so.
-    let mut y = f64::from_bits((x.to_bits() >> 1) + 0x1ff7_a3be_a91d_9b1b);
-    y = 0.5 * (y + x / y);
-    y = 0.5 * (y + x / y);
-    y = 0.5 * (y + x / y);
-    0.5 * (y + x / y)
-}
-";
 
 /// Most solutions a generated solver returns.
 const CAPACITY: usize = 16;
@@ -63,10 +48,10 @@ fn header(program: &Program, out: &mut String) {
     }
     out.push_str("\n#![allow(dead_code, unused_imports, unused_variables, clippy::all)]\n\n");
     out.push_str(
-        "pub use kernel::chain::{Frame, Link};\nuse kernel::candidate::{Arm, MOST_MISSES, WIDER};\n",
+        "pub use chain::{Frame, Link};\nuse candidate::{Arm, MOST_MISSES, WIDER};\n\
+         use math::{cos_sin, sqrt};\nuse roots::*;\n",
     );
-    out.push_str("use kernel::math::{cos_sin, sqrt};\nuse kernel::roots::*;\n");
-    out.push_str(if uses_six(&program.body) { "use kernel::six::six_of;\n\n" } else { "\n" });
+    out.push_str(if uses_six(&program.body) { "use six::six_of;\n\n" } else { "\n" });
 }
 
 fn constants(program: &Program, chain: &TrueChain, out: &mut String) {
@@ -306,25 +291,14 @@ fn uses_six(block: &Block) -> bool {
 /// The kernel's files as modules, without their tests.
 fn kernel(program: &Program, options: &RustOptions, out: &mut String) {
     let further: &[(&str, &str)] = if uses_six(&program.body) { &SIX_SOURCES } else { &[] };
-    out.push_str("/// What every generated solver shares: elementary functions, root finders, check and polish.\nmod kernel {\n");
-    for (name, source) in SOURCES.iter().chain(further) {
+    let sqrt = ("sqrt", if options.std { PLATFORM_SQRT } else { CORE_SQRT });
+    for (name, source) in [sqrt].iter().chain(&SOURCES).chain(further) {
         let code = source.split("#[cfg(test)]").next().unwrap_or(source);
-        let code = if options.std { code.to_owned() } else { without_std(code) };
-        let _ = writeln!(out, "    pub mod {name} {{");
-        for line in code.trim_end().lines().filter(|l| !l.starts_with("// BEGIN") && !l.starts_with("// END"))
-        {
-            let _ = if line.is_empty() { writeln!(out) } else { writeln!(out, "        {line}") };
+        let _ = writeln!(out, "mod {name} {{");
+        for line in code.trim_end().lines() {
+            let _ = if line.is_empty() { writeln!(out) } else { writeln!(out, "    {line}") };
         }
-        out.push_str("    }\n\n");
+        out.push_str("}\n\n");
     }
-    out.truncate(out.trim_end().len());
-    out.push_str("\n}\n");
-}
-
-/// The code with its marked square root replaced by one that needs no `std`.
-fn without_std(code: &str) -> String {
-    match (code.find("// BEGIN sqrt"), code.find("// END sqrt")) {
-        (Some(begin), Some(end)) => format!("{}{OWN_SQRT}{}", &code[..begin], &code[end..]),
-        _ => code.to_owned(),
-    }
+    out.truncate(out.trim_end().len() + 1);
 }

@@ -1,12 +1,15 @@
-//! Sine, cosine, arc tangent and square root from additions, products and quotients alone.
+//! Sine, cosine and arc tangent from additions, products and quotients alone.
 //!
-//! Each is within about one unit in the last place, and gives the same bits on every platform.
+//! Each is within one unit in the last place of the exact value, and gives the same bits on every platform.
 
-/// Cosine and sine of an angle in radians, `[cos, sin]`.
+pub use super::sqrt::sqrt;
+
+/// Cosine and sine of an angle in radians, `[cos, sin]`, for angles of up to a million quarter turns.
 ///
-/// Reduction to [-pi/4, pi/4] by a three-part pi/2 is exact enough up to some 1e5 turns; then Taylor polynomials,
-/// whose truncation is below 1e-18.
+/// Reduction by a three-part pi/2 to [-pi/4, pi/4] and a remainder below the last place, then Taylor polynomials whose
+/// truncation is below 1e-18.
 pub fn cos_sin(angle: f64) -> [f64; 2] {
+    // The first two parts have 33 bits: their products with the number of quarters are exact.
     const PI_2_A: f64 = 1.570_796_326_734_125_6;
     const PI_2_B: f64 = 6.077_100_506_303_966e-11;
     const PI_2_C: f64 = 2.022_266_248_795_950_6e-21;
@@ -14,20 +17,26 @@ pub fn cos_sin(angle: f64) -> [f64; 2] {
     // Ties matter little: the polynomials hold a bit beyond pi/4.
     let quarter = (if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i64;
     let k = quarter as f64;
-    let x = ((angle - k * PI_2_A) - k * PI_2_B) - k * PI_2_C;
+    let (b, c) = (k * PI_2_B, k * PI_2_C);
+    let a = angle - k * PI_2_A;
+    let ab = a - b;
+    let x = ab - c;
+    // What the two differences have rounded away.
+    let shift = ab - a;
+    let low = ((a - (ab - shift)) - (b + shift)) + ((ab - x) - c);
     let z = x * x;
     let mut s = 1.0 / 355_687_428_096_000.0;
     for d in [-1_307_674_368_000.0, 6_227_020_800.0, -39_916_800.0, 362_880.0, -5_040.0, 120.0, -6.0] {
         s = 1.0 / d + z * s;
     }
-    let s = x + x * z * s;
+    let half = 0.5 * z;
+    let s = x + (x * z * s + low * (1.0 - half));
     let mut c = 1.0 / 20_922_789_888_000.0;
     for d in [-87_178_291_200.0, 479_001_600.0, -3_628_800.0, 40_320.0, -720.0, 24.0] {
         c = 1.0 / d + z * c;
     }
-    let half = 0.5 * z;
     let w = 1.0 - half;
-    let c = w + (((1.0 - w) - half) + z * z * c);
+    let c = w + (((1.0 - w) - half) + (z * z * c - x * low));
     match quarter & 3 {
         0 => [c, s],
         1 => [-s, c],
@@ -39,66 +48,207 @@ pub fn cos_sin(angle: f64) -> [f64; 2] {
 /// Angle of the vector (`x`, `y`) in (-pi, pi]; 0 for the zero vector.
 ///
 /// Folded to the first octant, turned back by the nearest of nine tabulated angles `atan(k/8)`, then a Taylor
-/// polynomial on a ratio below 1/15.
+/// polynomial on a ratio below 1/8. Table and ratio carry what their last place has rounded away.
 pub fn atan2(y: f64, x: f64) -> f64 {
-    const ATAN_EIGHTHS: [f64; 9] = [
-        0.0,
-        0.124_354_994_546_761_44,
-        0.244_978_663_126_864_14,
-        0.358_770_670_270_572_2,
-        0.463_647_609_000_806_1,
-        0.558_599_315_343_562_4,
-        0.643_501_108_793_284_4,
-        0.718_829_999_621_624_5,
-        core::f64::consts::FRAC_PI_4,
+    use core::f64::consts::{FRAC_PI_2, PI};
+    /// `atan(k/8)`, and its rest.
+    const EIGHTHS: [[f64; 2]; 9] = [
+        [0.0, 0.0],
+        [0.124_354_994_546_761_44, -3.125_324_142_453_938e-18],
+        [0.244_978_663_126_864_14, 1.069_875_561_873_445e-17],
+        [0.358_770_670_270_572_25, -2.462_381_558_263_863_5e-17],
+        [0.463_647_609_000_806_1, 2.269_877_745_296_168_7e-17],
+        [0.558_599_315_343_562_4, -5.455_630_548_591_626e-18],
+        [0.643_501_108_793_284_4, 1.583_478_505_144_428_6e-17],
+        [0.718_829_999_621_624_5, -2.147_838_844_445_698_3e-17],
+        [0.785_398_163_397_448_3, 3.061_616_997_868_383e-17],
     ];
     let (ax, ay) = (x.abs(), y.abs());
     let (large, small) = if ax > ay { (ax, ay) } else { (ay, ax) };
     if large == 0.0 || !(large < f64::INFINITY) {
         return 0.0;
     }
-    let k = (small / large * 8.0 + 0.5) as usize;
+    // Quotients of numbers near the ends of the range lose digits.
+    let scale = if large < 1e-280 {
+        1e200
+    } else if large > 1e280 {
+        1e-200
+    } else {
+        1.0
+    };
+    let (large, small) = (large * scale, small * scale);
+    let ratio = small / large;
+    let k = if ratio < 0.125 { 0 } else { (ratio * 8.0 + 0.5) as usize };
     let tangent = k as f64 * 0.125;
-    let t = (small - tangent * large) / (large + tangent * small);
+    let top = upper_half(large);
+    let over = (small - tangent * top) - tangent * (large - top);
+    let under = large + tangent * small;
+    let inverse = 1.0 / under;
+    let t = over * inverse;
+    let t_low = (over - t * under - product_rest(t, under)) * inverse;
     let z = t * t;
-    let mut p = -1.0 / 15.0;
-    for d in [13.0, -11.0, 9.0, -7.0, 5.0, -3.0] {
+    let mut p = 1.0 / 17.0;
+    for d in [-15.0, 13.0, -11.0, 9.0, -7.0, 5.0, -3.0] {
         p = 1.0 / d + z * p;
     }
-    let mut angle = ATAN_EIGHTHS[k] + (t + t * z * p);
-    if ay > ax {
-        angle = core::f64::consts::FRAC_PI_2 - angle;
-    }
-    if x < 0.0 {
-        angle = core::f64::consts::PI - angle;
-    }
+    let (base, base_low, sign) = match (ay > ax, x < 0.0) {
+        (true, negative) => (FRAC_PI_2, 6.123_233_995_736_766e-17, if negative { 1.0 } else { -1.0 }),
+        (false, true) => (PI, 1.224_646_799_147_353_2e-16, -1.0),
+        (false, false) => (0.0, 0.0, 1.0),
+    };
+    let [table, table_low] = EIGHTHS[k];
+    let coarse = base + sign * table;
+    let fine = coarse + sign * t;
+    let rest = (sign * table - (coarse - base)) + (sign * t - (fine - coarse));
+    let angle = fine + (rest + (base_low + sign * (table_low + (t_low + t * z * p))));
     if y < 0.0 { -angle } else { angle }
 }
 
-/// Square root; 0 for negative arguments.
-// BEGIN sqrt: replaced in generated files that may not use `std`
-pub fn sqrt(x: f64) -> f64 {
-    if x > 0.0 { x.sqrt() } else { 0.0 }
+/// The number without the lower half of its digits.
+pub fn upper_half(x: f64) -> f64 {
+    f64::from_bits(x.to_bits() & 0xffff_ffff_f800_0000)
 }
-// END sqrt
+
+/// What the product `a * b` has rounded away.
+pub fn product_rest(a: f64, b: f64) -> f64 {
+    let (a_top, b_top) = (upper_half(a), upper_half(b));
+    let (a_low, b_low) = (a - a_top, b - b_top);
+    ((a_top * b_top - a * b) + a_top * b_low + a_low * b_top) + a_low * b_low
+}
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use core::f64::consts::{FRAC_PI_2, PI};
+    use robotc_core::Seed;
+
+    /// A number of about 106 bits: the exact sum of two.
+    #[derive(Clone, Copy)]
+    struct Twofold(f64, f64);
+
+    impl Twofold {
+        fn sum(a: f64, b: f64) -> Self {
+            let s = a + b;
+            let t = s - a;
+            Self(s, (a - (s - t)) + (b - t))
+        }
+
+        fn plus(self, other: Self) -> Self {
+            let (s, t) = (Self::sum(self.0, other.0), Self::sum(self.1, other.1));
+            let u = Self::sum(s.0, s.1 + t.0);
+            Self::sum(u.0, u.1 + t.1)
+        }
+
+        fn times(self, other: Self) -> Self {
+            let p = self.0 * other.0;
+            let rest = self.0.mul_add(other.0, -p);
+            Self::sum(p, rest + (self.0 * other.1 + self.1 * other.0))
+        }
+
+        fn over(self, d: f64) -> Self {
+            let q = self.0 / d;
+            Self::sum(q, ((-q).mul_add(d, self.0) + self.1) / d)
+        }
+    }
+
+    /// Cosine and sine to some 30 digits: reduction by 160 bits of pi/2, then 30 terms.
+    fn exact_cos_sin(angle: f64) -> [Twofold; 2] {
+        const PARTS: [f64; 3] = [FRAC_PI_2, 6.123_233_995_736_766e-17, -1.497_384_904_859_169_8e-33];
+        let k = (angle / FRAC_PI_2).round();
+        let step = |x: Twofold, part: f64| x.plus(Twofold(-k, 0.0).times(Twofold(part, 0.0)));
+        let x = PARTS.into_iter().fold(Twofold(angle, 0.0), step);
+        let z = x.times(x);
+        let series = |first: Twofold, from: usize| {
+            let (mut term, mut sum) = (first, first);
+            for n in (from..from + 30).step_by(2) {
+                let next = term.times(z).over(-(((n + 1) * (n + 2)) as f64));
+                (term, sum) = (next, sum.plus(next));
+            }
+            sum
+        };
+        let (c, s) = (series(Twofold(1.0, 0.0), 0), series(x, 1));
+        let minus = |a: Twofold| Twofold(-a.0, -a.1);
+        match k.rem_euclid(4.0) as i32 {
+            0 => [c, s],
+            1 => [minus(s), c],
+            2 => [minus(c), minus(s)],
+            _ => [s, minus(c)],
+        }
+    }
+
+    /// The last place of a number.
+    fn place(x: f64) -> f64 {
+        let x = x.abs();
+        f64::from_bits(x.to_bits() + 1) - x
+    }
+
+    /// Angles of all sizes, and those nearest to multiples of a quarter turn.
+    fn angles() -> Vec<f64> {
+        let mut rng = Seed::new(21).rng();
+        let mut angles: Vec<f64> = (-400..400).map(|k| f64::from(k) * FRAC_PI_2 * 0.5).collect();
+        angles.extend((0..60_000).map(|_| rng.range(-2.0 * PI, 2.0 * PI)));
+        angles.extend((0..20_000).map(|_| rng.range(-1e3, 1e3)));
+        angles.extend((0..20_000).map(|_| {
+            let off = rng.range(-1.0, 1.0) * 10f64.powf(rng.range(-17.0, -1.0));
+            (rng.range(-9.0, 9.0)).round() * FRAC_PI_2 + off
+        }));
+        angles
+    }
 
     #[test]
-    fn agree_with_the_platform() {
-        let mut worst = [0.0f64; 2];
-        for i in -40_000..40_000 {
-            let x = f64::from(i) * 7.321e-4;
-            let [c, s] = cos_sin(x);
-            worst[0] = worst[0].max((c - x.cos()).abs()).max((s - x.sin()).abs());
-            let y = f64::from(i % 977) * 0.013;
-            worst[1] = worst[1].max((atan2(y, x) - y.atan2(x)).abs());
+    fn cosine_and_sine_are_within_one_place() {
+        let mut worst = 0.0f64;
+        for angle in angles() {
+            for (found, exact) in cos_sin(angle).into_iter().zip(exact_cos_sin(angle)) {
+                let error = ((found - exact.0) - exact.1).abs() / place(exact.0);
+                assert!(error <= 1.0, "{angle:?}: {error} places");
+                worst = worst.max(error);
+            }
         }
-        assert!(worst[0] < 2.3e-16 && worst[1] < 4.5e-16, "{worst:?}");
-        assert_eq!(atan2(0.0, -1.0), core::f64::consts::PI);
+        assert!(worst > 0.4, "the oracle sees no rounding: {worst}");
+    }
+
+    #[test]
+    fn arc_tangent_is_within_one_place() {
+        let mut rng = Seed::new(22).rng();
+        let mut points = Vec::new();
+        for angle in angles() {
+            let size = 10f64.powf(rng.range(-12.0, 3.0));
+            points.push((size * angle.sin(), size * angle.cos()));
+        }
+        // Where the table steps.
+        for k in 0..=16 {
+            for _ in 0..2000 {
+                let (ratio, large) = (f64::from(k) / 16.0 + rng.range(-1e-3, 1e-3), rng.range(0.5, 2.0));
+                points.extend([(ratio * large, large), (large, -ratio * large), (ratio * large, -large)]);
+            }
+        }
+        let mut worst = 0.0f64;
+        for (y, x) in points {
+            let angle = atan2(y, x);
+            if y == 0.0 {
+                continue;
+            }
+            // The angle that is missing, from the point turned back by the one found.
+            let [c, s] = exact_cos_sin(angle);
+            let (y, x) = (Twofold(y, 0.0), Twofold(x, 0.0));
+            let across = y.times(c).plus(Twofold(-s.0, -s.1).times(x));
+            let error = (across.0 / x.times(c).plus(y.times(s)).0).abs() / place(angle);
+            assert!(error <= 1.0, "atan2({}, {}): {error} places", y.0, x.0);
+            worst = worst.max(error);
+        }
+        assert!(worst > 0.4, "the oracle sees no rounding: {worst}");
+    }
+
+    #[test]
+    fn arc_tangent_at_the_ends_of_its_range() {
+        assert_eq!(atan2(0.0, -1.0), PI);
+        assert_eq!(atan2(-0.0, -1.0), PI);
         assert_eq!(atan2(0.0, 0.0), 0.0);
-        assert_eq!(sqrt(-1.0), 0.0);
+        assert_eq!(atan2(1.0, 0.0), FRAC_PI_2);
+        assert_eq!(atan2(-1.0, 0.0), -FRAC_PI_2);
+        assert_eq!(atan2(3e-310, 3e-310), PI / 4.0);
+        assert_eq!(atan2(-1e305, 1e305), -PI / 4.0);
+        assert_eq!(atan2(f64::NAN, 1.0), 0.0);
     }
 }

@@ -13,10 +13,13 @@ pub mod eigen;
 pub mod math;
 pub mod roots;
 pub mod six;
+pub mod sqrt;
+#[cfg(test)]
+mod sqrt_core;
 pub mod vector;
 pub mod waves;
 
-/// Source text of the kernel files, as generated files carry it.
+/// Source text of the kernel files, as generated files carry it; the square root comes in two kinds.
 #[cfg(feature = "generate")]
 pub(crate) const SOURCES: [(&str, &str); 4] = [
     ("math", include_str!("math.rs")),
@@ -33,3 +36,11 @@ pub(crate) const SIX_SOURCES: [(&str, &str); 4] = [
     ("waves", include_str!("waves.rs")),
     ("six", include_str!("six.rs")),
 ];
+
+/// The square root of the platform.
+#[cfg(feature = "generate")]
+pub(crate) const PLATFORM_SQRT: &str = include_str!("sqrt.rs");
+
+/// The square root that needs nothing but `core`.
+#[cfg(feature = "generate")]
+pub(crate) const CORE_SQRT: &str = include_str!("sqrt_core.rs");

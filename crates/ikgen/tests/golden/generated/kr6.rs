@@ -6,10 +6,10 @@
 
 #![allow(dead_code, unused_imports, unused_variables, clippy::all)]
 
-pub use kernel::chain::{Frame, Link};
-use kernel::candidate::{Arm, MOST_MISSES, WIDER};
-use kernel::math::{cos_sin, sqrt};
-use kernel::roots::*;
+pub use chain::{Frame, Link};
+use candidate::{Arm, MOST_MISSES, WIDER};
+use math::{cos_sin, sqrt};
+use roots::*;
 
 /// Number of variables.
 pub const VARIABLES: usize = 6;
@@ -317,725 +317,771 @@ fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &m
     }
 }
 
-/// What every generated solver shares: elementary functions, root finders, check and polish.
-mod kernel {
-    pub mod math {
-        //! Sine, cosine, arc tangent and square root from additions, products and quotients alone.
-        //!
-        //! Each is within about one unit in the last place, and gives the same bits on every platform.
+mod sqrt {
+    //! The square root from sums and products alone, for generated files that may not use `std`.
 
-        /// Cosine and sine of an angle in radians, `[cos, sin]`.
-        ///
-        /// Reduction to [-pi/4, pi/4] by a three-part pi/2 is exact enough up to some 1e5 turns; then Taylor polynomials,
-        /// whose truncation is below 1e-18.
-        pub fn cos_sin(angle: f64) -> [f64; 2] {
-            const PI_2_A: f64 = 1.570_796_326_734_125_6;
-            const PI_2_B: f64 = 6.077_100_506_303_966e-11;
-            const PI_2_C: f64 = 2.022_266_248_795_950_6e-21;
-            let scaled = angle * core::f64::consts::FRAC_2_PI;
-            // Ties matter little: the polynomials hold a bit beyond pi/4.
-            let quarter = (if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i64;
-            let k = quarter as f64;
-            let x = ((angle - k * PI_2_A) - k * PI_2_B) - k * PI_2_C;
-            let z = x * x;
-            let mut s = 1.0 / 355_687_428_096_000.0;
-            for d in [-1_307_674_368_000.0, 6_227_020_800.0, -39_916_800.0, 362_880.0, -5_040.0, 120.0, -6.0] {
-                s = 1.0 / d + z * s;
-            }
-            let s = x + x * z * s;
-            let mut c = 1.0 / 20_922_789_888_000.0;
-            for d in [-87_178_291_200.0, 479_001_600.0, -3_628_800.0, 40_320.0, -720.0, 24.0] {
-                c = 1.0 / d + z * c;
-            }
-            let half = 0.5 * z;
-            let w = 1.0 - half;
-            let c = w + (((1.0 - w) - half) + z * z * c);
-            match quarter & 3 {
-                0 => [c, s],
-                1 => [-s, c],
-                2 => [-c, -s],
-                _ => [s, -c],
-            }
+    use super::math::product_rest;
+
+    /// Square root, correctly rounded except just below powers of four (there it may be the power of two); 0 for arguments that are
+    /// negative or below 1e-300.
+    pub fn sqrt(x: f64) -> f64 {
+        if !(x > 1e-300) {
+            return 0.0;
         }
-
-        /// Angle of the vector (`x`, `y`) in (-pi, pi]; 0 for the zero vector.
-        ///
-        /// Folded to the first octant, turned back by the nearest of nine tabulated angles `atan(k/8)`, then a Taylor
-        /// polynomial on a ratio below 1/15.
-        pub fn atan2(y: f64, x: f64) -> f64 {
-            const ATAN_EIGHTHS: [f64; 9] = [
-                0.0,
-                0.124_354_994_546_761_44,
-                0.244_978_663_126_864_14,
-                0.358_770_670_270_572_2,
-                0.463_647_609_000_806_1,
-                0.558_599_315_343_562_4,
-                0.643_501_108_793_284_4,
-                0.718_829_999_621_624_5,
-                core::f64::consts::FRAC_PI_4,
-            ];
-            let (ax, ay) = (x.abs(), y.abs());
-            let (large, small) = if ax > ay { (ax, ay) } else { (ay, ax) };
-            if large == 0.0 || !(large < f64::INFINITY) {
-                return 0.0;
-            }
-            let k = (small / large * 8.0 + 0.5) as usize;
-            let tangent = k as f64 * 0.125;
-            let t = (small - tangent * large) / (large + tangent * small);
-            let z = t * t;
-            let mut p = -1.0 / 15.0;
-            for d in [13.0, -11.0, 9.0, -7.0, 5.0, -3.0] {
-                p = 1.0 / d + z * p;
-            }
-            let mut angle = ATAN_EIGHTHS[k] + (t + t * z * p);
-            if ay > ax {
-                angle = core::f64::consts::FRAC_PI_2 - angle;
-            }
-            if x < 0.0 {
-                angle = core::f64::consts::PI - angle;
-            }
-            if y < 0.0 { -angle } else { angle }
+        if x == f64::INFINITY {
+            return x;
         }
+        // Halving the exponent gives the inverse root within 4 %; each Newton step doubles the digits.
+        let mut inverse = f64::from_bits(0x5fe6_eb50_c7b5_37a9 - (x.to_bits() >> 1));
+        let half = 0.5 * x;
+        for _ in 0..4 {
+            inverse *= 1.5 - half * inverse * inverse;
+        }
+        let root = x * inverse;
+        // What is missing, with the square taken exactly.
+        let rest = (x - root * root) - product_rest(root, root);
+        root + 0.5 * inverse * rest
+    }
+}
 
-        /// Square root; 0 for negative arguments.
-        pub fn sqrt(x: f64) -> f64 {
-            if !(x > 1e-300) {
-                return 0.0;
-            }
-            // Halving the exponent is right within 4 %; four steps of Heron's rule are then exact to the last bit or so.
-            let mut y = f64::from_bits((x.to_bits() >> 1) + 0x1ff7_a3be_a91d_9b1b);
-            y = 0.5 * (y + x / y);
-            y = 0.5 * (y + x / y);
-            y = 0.5 * (y + x / y);
-            0.5 * (y + x / y)
+mod math {
+    //! Sine, cosine and arc tangent from additions, products and quotients alone.
+    //!
+    //! Each is within one unit in the last place of the exact value, and gives the same bits on every platform.
+
+    pub use super::sqrt::sqrt;
+
+    /// Cosine and sine of an angle in radians, `[cos, sin]`, for angles of up to a million quarter turns.
+    ///
+    /// Reduction by a three-part pi/2 to [-pi/4, pi/4] and a remainder below the last place, then Taylor polynomials whose
+    /// truncation is below 1e-18.
+    pub fn cos_sin(angle: f64) -> [f64; 2] {
+        // The first two parts have 33 bits: their products with the number of quarters are exact.
+        const PI_2_A: f64 = 1.570_796_326_734_125_6;
+        const PI_2_B: f64 = 6.077_100_506_303_966e-11;
+        const PI_2_C: f64 = 2.022_266_248_795_950_6e-21;
+        let scaled = angle * core::f64::consts::FRAC_2_PI;
+        // Ties matter little: the polynomials hold a bit beyond pi/4.
+        let quarter = (if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i64;
+        let k = quarter as f64;
+        let (b, c) = (k * PI_2_B, k * PI_2_C);
+        let a = angle - k * PI_2_A;
+        let ab = a - b;
+        let x = ab - c;
+        // What the two differences have rounded away.
+        let shift = ab - a;
+        let low = ((a - (ab - shift)) - (b + shift)) + ((ab - x) - c);
+        let z = x * x;
+        let mut s = 1.0 / 355_687_428_096_000.0;
+        for d in [-1_307_674_368_000.0, 6_227_020_800.0, -39_916_800.0, 362_880.0, -5_040.0, 120.0, -6.0] {
+            s = 1.0 / d + z * s;
+        }
+        let half = 0.5 * z;
+        let s = x + (x * z * s + low * (1.0 - half));
+        let mut c = 1.0 / 20_922_789_888_000.0;
+        for d in [-87_178_291_200.0, 479_001_600.0, -3_628_800.0, 40_320.0, -720.0, 24.0] {
+            c = 1.0 / d + z * c;
+        }
+        let w = 1.0 - half;
+        let c = w + (((1.0 - w) - half) + (z * z * c - x * low));
+        match quarter & 3 {
+            0 => [c, s],
+            1 => [-s, c],
+            2 => [-c, -s],
+            _ => [s, -c],
         }
     }
 
-    pub mod roots {
-        //! Root finders of the solution language. Angles are unknown through their cosine and sine; no root takes an
-        //! inverse trigonometric function.
+    /// Angle of the vector (`x`, `y`) in (-pi, pi]; 0 for the zero vector.
+    ///
+    /// Folded to the first octant, turned back by the nearest of nine tabulated angles `atan(k/8)`, then a Taylor
+    /// polynomial on a ratio below 1/8. Table and ratio carry what their last place has rounded away.
+    pub fn atan2(y: f64, x: f64) -> f64 {
+        use core::f64::consts::{FRAC_PI_2, PI};
+        /// `atan(k/8)`, and its rest.
+        const EIGHTHS: [[f64; 2]; 9] = [
+            [0.0, 0.0],
+            [0.124_354_994_546_761_44, -3.125_324_142_453_938e-18],
+            [0.244_978_663_126_864_14, 1.069_875_561_873_445e-17],
+            [0.358_770_670_270_572_25, -2.462_381_558_263_863_5e-17],
+            [0.463_647_609_000_806_1, 2.269_877_745_296_168_7e-17],
+            [0.558_599_315_343_562_4, -5.455_630_548_591_626e-18],
+            [0.643_501_108_793_284_4, 1.583_478_505_144_428_6e-17],
+            [0.718_829_999_621_624_5, -2.147_838_844_445_698_3e-17],
+            [0.785_398_163_397_448_3, 3.061_616_997_868_383e-17],
+        ];
+        let (ax, ay) = (x.abs(), y.abs());
+        let (large, small) = if ax > ay { (ax, ay) } else { (ay, ax) };
+        if large == 0.0 || !(large < f64::INFINITY) {
+            return 0.0;
+        }
+        // Quotients of numbers near the ends of the range lose digits.
+        let scale = if large < 1e-280 { 1e200 } else if large > 1e280 { 1e-200 } else { 1.0 };
+        let (large, small) = (large * scale, small * scale);
+        let ratio = small / large;
+        let k = if ratio < 0.125 { 0 } else { (ratio * 8.0 + 0.5) as usize };
+        let tangent = k as f64 * 0.125;
+        let top = upper_half(large);
+        let over = (small - tangent * top) - tangent * (large - top);
+        let under = large + tangent * small;
+        let inverse = 1.0 / under;
+        let t = over * inverse;
+        let t_low = (over - t * under - product_rest(t, under)) * inverse;
+        let z = t * t;
+        let mut p = 1.0 / 17.0;
+        for d in [-15.0, 13.0, -11.0, 9.0, -7.0, 5.0, -3.0] {
+            p = 1.0 / d + z * p;
+        }
+        let (base, base_low, sign) = match (ay > ax, x < 0.0) {
+            (true, negative) => (FRAC_PI_2, 6.123_233_995_736_766e-17, if negative { 1.0 } else { -1.0 }),
+            (false, true) => (PI, 1.224_646_799_147_353_2e-16, -1.0),
+            (false, false) => (0.0, 0.0, 1.0),
+        };
+        let [table, table_low] = EIGHTHS[k];
+        let coarse = base + sign * table;
+        let fine = coarse + sign * t;
+        let rest = (sign * table - (coarse - base)) + (sign * t - (fine - coarse));
+        let angle = fine + (rest + (base_low + sign * (table_low + (t_low + t * z * p))));
+        if y < 0.0 { -angle } else { angle }
+    }
 
-        use super::math::{cos_sin, sqrt};
+    /// The number without the lower half of its digits.
+    pub fn upper_half(x: f64) -> f64 {
+        f64::from_bits(x.to_bits() & 0xffff_ffff_f800_0000)
+    }
 
-        /// Below this a coefficient counts as zero: the equation then says nothing about its unknown.
-        pub const VANISHING: f64 = 1e-11;
+    /// What the product `a * b` has rounded away.
+    pub fn product_rest(a: f64, b: f64) -> f64 {
+        let (a_top, b_top) = (upper_half(a), upper_half(b));
+        let (a_low, b_low) = (a - a_top, b - b_top);
+        ((a_top * b_top - a * b) + a_top * b_low + a_low * b_top) + a_low * b_low
+    }
+}
 
-        /// An equation that misses its roots by no more than this is taken at the nearest point: the edge of what an arm can do.
-        pub const EDGE: f64 = 1e-9;
+mod roots {
+    //! Root finders of the solution language. Angles are unknown through their cosine and sine; no root takes an
+    //! inverse trigonometric function.
 
-        /// How many angles are tried for an unknown that is free.
-        const REPRESENTATIVES: usize = 32;
+    use super::math::{cos_sin, sqrt};
 
-        /// The k-th of them: zero first, then a half turn, then quarters between, and so on.
-        fn representative(k: usize) -> [f64; 2] {
-            let reversed = ((k as u32).reverse_bits() >> 27) as f64;
-            cos_sin(reversed * (core::f64::consts::TAU / 32.0))
+    /// Below this a coefficient counts as zero: the equation then says nothing about its unknown.
+    pub const VANISHING: f64 = 1e-11;
+
+    /// An equation that misses its roots by no more than this is taken at the nearest point: the edge of what an arm can do.
+    pub const EDGE: f64 = 1e-9;
+
+    /// How many angles are tried for an unknown that is free.
+    const REPRESENTATIVES: usize = 32;
+
+    /// The k-th of them: zero first, then a half turn, then quarters between, and so on.
+    fn representative(k: usize) -> [f64; 2] {
+        let reversed = ((k as u32).reverse_bits() >> 27) as f64;
+        cos_sin(reversed * (core::f64::consts::TAU / 32.0))
+    }
+
+    /// The roots of an equation, each `[cos, sin]` of an angle, or `[length, 0]`.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Roots {
+        items: [[f64; 2]; 4],
+        len: usize,
+        /// The unknown is free, or nearly so: later roots are tried only while none has led to a solution.
+        pub free: bool,
+    }
+
+    impl Roots {
+        /// No root.
+        pub const NONE: Roots = Roots { items: [[1.0, 0.0]; 4], len: 0, free: false };
+
+        /// Any angle will do.
+        pub const ANY_ANGLE: Roots = Roots { items: [[1.0, 0.0]; 4], len: 0, free: true };
+
+        /// How many roots there are.
+        pub fn count(&self) -> usize {
+            if self.free { self.len + REPRESENTATIVES } else { self.len }
         }
 
-        /// The roots of an equation, each `[cos, sin]` of an angle, or `[length, 0]`.
-        #[derive(Clone, Copy, Debug)]
-        pub struct Roots {
-            items: [[f64; 2]; 4],
-            len: usize,
-            /// The unknown is free, or nearly so: later roots are tried only while none has led to a solution.
-            pub free: bool,
+        /// One of them.
+        pub fn get(&self, i: usize) -> [f64; 2] {
+            if i < self.len { self.items[i] } else { representative(i - self.len) }
         }
 
-        impl Roots {
-            /// No root.
-            pub const NONE: Roots = Roots { items: [[1.0, 0.0]; 4], len: 0, free: false };
-
-            /// Any angle will do.
-            pub const ANY_ANGLE: Roots = Roots { items: [[1.0, 0.0]; 4], len: 0, free: true };
-
-            /// How many roots there are.
-            pub fn count(&self) -> usize {
-                if self.free { self.len + REPRESENTATIVES } else { self.len }
-            }
-
-            /// One of them.
-            pub fn get(&self, i: usize) -> [f64; 2] {
-                if i < self.len { self.items[i] } else { representative(i - self.len) }
-            }
-
-            fn push(&mut self, root: [f64; 2]) {
-                if self.len < 4 {
-                    self.items[self.len] = root;
-                    self.len += 1;
-                }
+        fn push(&mut self, root: [f64; 2]) {
+            if self.len < 4 {
+                self.items[self.len] = root;
+                self.len += 1;
             }
         }
+    }
 
-        /// The angle whose cosine and sine are proportional to `x` and `y`.
-        pub fn align(x: f64, y: f64, slack: f64) -> Roots {
-            let n = sqrt(x * x + y * y);
-            if !(x.abs() + y.abs() < f64::INFINITY) {
-                return Roots::NONE;
+    /// The angle whose cosine and sine are proportional to `x` and `y`.
+    pub fn align(x: f64, y: f64, slack: f64) -> Roots {
+        let n = sqrt(x * x + y * y);
+        if !(x.abs() + y.abs() < f64::INFINITY) {
+            return Roots::NONE;
+        }
+        if n < VANISHING {
+            return Roots::ANY_ANGLE;
+        }
+        let mut roots = Roots::NONE;
+        roots.free = n < slack;
+        roots.push([x / n, y / n]);
+        roots
+    }
+
+    /// The two angles whose cosine is proportional to `x` and sine to plus or minus `y`.
+    pub fn mirror(x: f64, y: f64, slack: f64) -> Roots {
+        let n = sqrt(x * x + y * y);
+        if !(x.abs() + y.abs() < f64::INFINITY) {
+            return Roots::NONE;
+        }
+        if n < VANISHING {
+            return Roots::ANY_ANGLE;
+        }
+        let mut roots = Roots::NONE;
+        let (x, y) = (x / n, apart(y.abs() / n, slack / n));
+        roots.push([x, y]);
+        if y > VANISHING {
+            roots.push([x, -y]);
+        }
+        roots
+    }
+
+    /// The sine at which two roots that nearly fall together are started. The ideal chain says where they meet only up to
+    /// `slack`; from the meeting point itself a polish could find neither.
+    fn apart(sine: f64, slack: f64) -> f64 {
+        let least = sqrt(2.0 * slack);
+        if sine < least { if least < 0.2 { least } else { 0.2 } } else { sine }
+    }
+
+    /// The angles with `a cos + b sin = d`.
+    ///
+    /// When the line misses the unit circle by no more than [`EDGE`] and `slack` the nearest angle is given: such poses are at the
+    /// edge of what the arm can do, and the check of solutions decides.
+    pub fn circle(a: f64, b: f64, d: f64, slack: f64) -> Roots {
+        let n = sqrt(a * a + b * b);
+        if !(a.abs() + b.abs() < f64::INFINITY) {
+            return Roots::NONE;
+        }
+        if n < VANISHING {
+            return if d.abs() <= EDGE + slack { Roots::ANY_ANGLE } else { Roots::NONE };
+        }
+        let miss = d.abs() - n;
+        if !(miss <= EDGE + slack) {
+            return Roots::NONE;
+        }
+        let (x, y) = (a / n, b / n);
+        let c = if miss < 0.0 { d / n } else { 1f64.copysign(d) };
+        // (1 - c)(1 + c) keeps the digits that 1 - c * c loses near the edge.
+        let s = apart(sqrt((1.0 - c) * (1.0 + c)), slack / n);
+        let mut roots = Roots::NONE;
+        roots.push([c * x - s * y, c * y + s * x]);
+        if s > 0.0 {
+            roots.push([c * x + s * y, c * y - s * x]);
+        }
+        roots
+    }
+
+    /// The lengths with `a t^2 + b t + c = 0`; a discriminant that misses zero by `slack` counts as zero.
+    pub fn quadratic(a: f64, b: f64, c: f64, slack: f64) -> Roots {
+        let mut roots = Roots::NONE;
+        if a.abs() < VANISHING {
+            if b.abs() >= VANISHING {
+                roots.push([-c / b, 0.0]);
+            } else if c.abs() <= EDGE + slack {
+                roots.push([0.0, 0.0]);
             }
+            return roots;
+        }
+        let (half, product) = (-0.5 * b / a, c / a);
+        let discriminant = half * half - product;
+        if !(discriminant >= -EDGE - slack) {
+            return roots;
+        }
+        let root = sqrt(discriminant);
+        let far = if half < 0.0 { half - root } else { half + root };
+        roots.push([far, 0.0]);
+        if root > 0.0 && far != 0.0 {
+            roots.push([product / far, 0.0]);
+        }
+        roots
+    }
+
+    /// The angles with `q[0] cos^2 + q[1] cos sin + q[2] sin^2 + q[3] cos + q[4] sin + q[5] = 0`.
+    ///
+    /// The pencil of the conic and the unit circle holds a pair of real lines through their common points; a cubic gives it,
+    /// and each line meets the circle in at most two angles. A Newton step on the equation restores lost digits.
+    pub fn conic(q: [f64; 6], slack: f64) -> Roots {
+        let mut size = 0.0f64;
+        for x in q {
+            size = size.max(x.abs());
+        }
+        if !(size < f64::INFINITY) {
+            return Roots::NONE;
+        }
+        if size < VANISHING {
+            return Roots::ANY_ANGLE;
+        }
+        let [a, b, c, d, e, f] = q.map(|x| x / size);
+        // Symmetric matrix of the conic; the circle is diag(1, 1, -1).
+        let (b, d, e) = (0.5 * b, 0.5 * d, 0.5 * e);
+        // det(conic + t circle) = -(t^3 + p t^2 + r t + u).
+        let p = a + c - f;
+        let r = a * c - b * b - f * (a + c) + d * d + e * e;
+        let u = -(a * (c * f - e * e) - b * (b * f - e * d) + d * (b * e - c * d));
+        let mut best = [0.0f64; 9];
+        let mut lowest = f64::INFINITY;
+        for t in cubic(p, r, u) {
+            let m = [a + t, b, d, b, c + t, e, d, e, f - t];
+            // Product of the two eigenvalues that are not zero: negative for a pair of real lines.
+            let product = m[0] * m[4] - m[1] * m[1] + m[0] * m[8] - m[2] * m[2] + m[4] * m[8] - m[5] * m[5];
+            if product < lowest {
+                (lowest, best) = (product, m);
+            }
+        }
+        let mut roots = Roots::NONE;
+        for line in split(&best) {
+            let n = sqrt(line[0] * line[0] + line[1] * line[1]);
             if n < VANISHING {
-                return Roots::ANY_ANGLE;
+                continue;
             }
-            let mut roots = Roots::NONE;
-            roots.free = n < slack;
-            roots.push([x / n, y / n]);
-            roots
+            let met = circle(line[0] / n, line[1] / n, -line[2] / n, slack.max(1e-7));
+            for i in 0..met.count() {
+                roots.push(improve([a, 2.0 * b, c, 2.0 * d, 2.0 * e, f], met.get(i)));
+            }
         }
+        roots
+    }
 
-        /// The two angles whose cosine is proportional to `x` and sine to plus or minus `y`.
-        pub fn mirror(x: f64, y: f64, slack: f64) -> Roots {
-            let n = sqrt(x * x + y * y);
-            if !(x.abs() + y.abs() < f64::INFINITY) {
-                return Roots::NONE;
-            }
-            if n < VANISHING {
-                return Roots::ANY_ANGLE;
-            }
-            let mut roots = Roots::NONE;
-            let (x, y) = (x / n, apart(y.abs() / n, slack / n));
-            roots.push([x, y]);
-            if y > VANISHING {
-                roots.push([x, -y]);
-            }
-            roots
+    /// Real roots of `t^3 + p t^2 + r t + u`, the first repeated where there is only one.
+    fn cubic(p: f64, r: f64, u: f64) -> [f64; 3] {
+        // Newton from outside of all roots on the side of the inflection where a root must be: monotone.
+        let inflection = -p / 3.0;
+        let value = |t: f64| ((t + p) * t + r) * t + u;
+        let spread = sqrt((p * p - 3.0 * r).max(0.0));
+        let side = if value(inflection) > 0.0 { -1.0 } else { 1.0 };
+        let mut t = inflection + side * (spread * 0.7 + 1e-9);
+        while value(t) * side < 0.0 {
+            t = inflection + 2.0 * (t - inflection);
         }
-
-        /// The sine at which two roots that nearly fall together are started. The ideal chain says where they meet only up to
-        /// `slack`; from the meeting point itself a polish could find neither.
-        fn apart(sine: f64, slack: f64) -> f64 {
-            let least = sqrt(2.0 * slack);
-            if sine < least { if least < 0.2 { least } else { 0.2 } } else { sine }
+        for _ in 0..60 {
+            let slope = (3.0 * t + 2.0 * p) * t + r;
+            if slope == 0.0 {
+                break;
+            }
+            let next = t - value(t) / slope;
+            if !(next < f64::INFINITY && next > -f64::INFINITY) || (next - t).abs() <= 1e-16 * t.abs() {
+                break;
+            }
+            t = next;
         }
-
-        /// The angles with `a cos + b sin = d`.
-        ///
-        /// When the line misses the unit circle by no more than [`EDGE`] and `slack` the nearest angle is given: such poses are at the
-        /// edge of what the arm can do, and the check of solutions decides.
-        pub fn circle(a: f64, b: f64, d: f64, slack: f64) -> Roots {
-            let n = sqrt(a * a + b * b);
-            if !(a.abs() + b.abs() < f64::INFINITY) {
-                return Roots::NONE;
-            }
-            if n < VANISHING {
-                return if d.abs() <= EDGE + slack { Roots::ANY_ANGLE } else { Roots::NONE };
-            }
-            let miss = d.abs() - n;
-            if !(miss <= EDGE + slack) {
-                return Roots::NONE;
-            }
-            let (x, y) = (a / n, b / n);
-            let c = if miss < 0.0 { d / n } else { 1f64.copysign(d) };
-            // (1 - c)(1 + c) keeps the digits that 1 - c * c loses near the edge.
-            let s = apart(sqrt((1.0 - c) * (1.0 + c)), slack / n);
-            let mut roots = Roots::NONE;
-            roots.push([c * x - s * y, c * y + s * x]);
-            if s > 0.0 {
-                roots.push([c * x + s * y, c * y - s * x]);
-            }
-            roots
+        // The other two from the quotient t^2 + (p + t) t + (r + t (p + t)).
+        let (b, c) = (p + t, r + t * (p + t));
+        let half = -0.5 * b;
+        let discriminant = half * half - c;
+        if discriminant < 0.0 {
+            // A double root whose discriminant was lost to rounding still counts.
+            return if discriminant > -1e-12 * (half * half + c.abs()) { [t, half, half] } else { [t, t, t] };
         }
+        let far = if half < 0.0 { half - sqrt(discriminant) } else { half + sqrt(discriminant) };
+        [t, far, if far == 0.0 { 0.0 } else { c / far }]
+    }
 
-        /// The lengths with `a t^2 + b t + c = 0`; a discriminant that misses zero by `slack` counts as zero.
-        pub fn quadratic(a: f64, b: f64, c: f64, slack: f64) -> Roots {
-            let mut roots = Roots::NONE;
-            if a.abs() < VANISHING {
-                if b.abs() >= VANISHING {
-                    roots.push([-c / b, 0.0]);
-                } else if c.abs() <= EDGE + slack {
-                    roots.push([0.0, 0.0]);
-                }
-                return roots;
+    /// The two lines of a degenerate conic, row by row.
+    fn split(m: &[f64; 9]) -> [[f64; 3]; 2] {
+        let adjugate = [
+            m[5] * m[7] - m[4] * m[8],
+            m[1] * m[8] - m[2] * m[7],
+            m[2] * m[4] - m[1] * m[5],
+            0.0,
+            m[2] * m[6] - m[0] * m[8],
+            m[0] * m[5] - m[2] * m[3],
+            0.0,
+            0.0,
+            m[1] * m[3] - m[0] * m[4],
+        ];
+        // Minus the adjugate is the square p p^T of the point where the lines meet.
+        let square = [
+            [adjugate[0], adjugate[1], adjugate[2]],
+            [adjugate[1], adjugate[4], adjugate[5]],
+            [adjugate[2], adjugate[5], adjugate[8]],
+        ];
+        let mut i = 0;
+        for k in 1..3 {
+            if square[k][k] > square[i][i] {
+                i = k;
             }
-            let (half, product) = (-0.5 * b / a, c / a);
-            let discriminant = half * half - product;
-            if !(discriminant >= -EDGE - slack) {
-                return roots;
-            }
-            let root = sqrt(discriminant);
-            let far = if half < 0.0 { half - root } else { half + root };
-            roots.push([far, 0.0]);
-            if root > 0.0 && far != 0.0 {
-                roots.push([product / far, 0.0]);
-            }
-            roots
         }
-
-        /// The angles with `q[0] cos^2 + q[1] cos sin + q[2] sin^2 + q[3] cos + q[4] sin + q[5] = 0`.
-        ///
-        /// The pencil of the conic and the unit circle holds a pair of real lines through their common points; a cubic gives it,
-        /// and each line meets the circle in at most two angles. A Newton step on the equation restores lost digits.
-        pub fn conic(q: [f64; 6], slack: f64) -> Roots {
-            let mut size = 0.0f64;
-            for x in q {
-                size = size.max(x.abs());
-            }
-            if !(size < f64::INFINITY) {
-                return Roots::NONE;
-            }
-            if size < VANISHING {
-                return Roots::ANY_ANGLE;
-            }
-            let [a, b, c, d, e, f] = q.map(|x| x / size);
-            // Symmetric matrix of the conic; the circle is diag(1, 1, -1).
-            let (b, d, e) = (0.5 * b, 0.5 * d, 0.5 * e);
-            // det(conic + t circle) = -(t^3 + p t^2 + r t + u).
-            let p = a + c - f;
-            let r = a * c - b * b - f * (a + c) + d * d + e * e;
-            let u = -(a * (c * f - e * e) - b * (b * f - e * d) + d * (b * e - c * d));
-            let mut best = [0.0f64; 9];
-            let mut lowest = f64::INFINITY;
-            for t in cubic(p, r, u) {
-                let m = [a + t, b, d, b, c + t, e, d, e, f - t];
-                // Product of the two eigenvalues that are not zero: negative for a pair of real lines.
-                let product = m[0] * m[4] - m[1] * m[1] + m[0] * m[8] - m[2] * m[2] + m[4] * m[8] - m[5] * m[5];
-                if product < lowest {
-                    (lowest, best) = (product, m);
+        let root = sqrt(square[i][i]);
+        let meeting = if root > 0.0 { square[i].map(|x| x / root) } else { [0.0; 3] };
+        let [x, y, z] = meeting;
+        let lines = [[m[0], m[1] - z, m[2] + y], [m[3] + z, m[4], m[5] - x], [m[6] - y, m[7] + x, m[8]]];
+        let (mut row, mut column) = (0, 0);
+        for i in 0..3 {
+            for j in 0..3 {
+                if lines[i][j].abs() > lines[row][column].abs() {
+                    (row, column) = (i, j);
                 }
             }
-            let mut roots = Roots::NONE;
-            for line in split(&best) {
-                let n = sqrt(line[0] * line[0] + line[1] * line[1]);
-                if n < VANISHING {
-                    continue;
-                }
-                let met = circle(line[0] / n, line[1] / n, -line[2] / n, slack.max(1e-7));
-                for i in 0..met.count() {
-                    roots.push(improve([a, 2.0 * b, c, 2.0 * d, 2.0 * e, f], met.get(i)));
-                }
-            }
-            roots
         }
+        [lines[row], [lines[0][column], lines[1][column], lines[2][column]]]
+    }
 
-        /// Real roots of `t^3 + p t^2 + r t + u`, the first repeated where there is only one.
-        fn cubic(p: f64, r: f64, u: f64) -> [f64; 3] {
-            // Newton from outside of all roots on the side of the inflection where a root must be: monotone.
-            let inflection = -p / 3.0;
-            let value = |t: f64| ((t + p) * t + r) * t + u;
-            let spread = sqrt((p * p - 3.0 * r).max(0.0));
-            let side = if value(inflection) > 0.0 { -1.0 } else { 1.0 };
-            let mut t = inflection + side * (spread * 0.7 + 1e-9);
-            while value(t) * side < 0.0 {
-                t = inflection + 2.0 * (t - inflection);
+    /// Two Newton steps of the conic's equation along the circle, taken only where they help.
+    fn improve(q: [f64; 6], root: [f64; 2]) -> [f64; 2] {
+        let value = |[c, s]: [f64; 2]| (q[0] * c + q[1] * s + q[3]) * c + (q[2] * s + q[4]) * s + q[5];
+        let mut at = root;
+        let mut error = value(at);
+        for _ in 0..2 {
+            let [c, s] = at;
+            let slope = 2.0 * (q[2] - q[0]) * c * s + q[1] * (c * c - s * s) - q[3] * s + q[4] * c;
+            let step = -error / slope;
+            if !(step.abs() < 1e-2) {
+                break;
             }
-            for _ in 0..60 {
-                let slope = (3.0 * t + 2.0 * p) * t + r;
-                if slope == 0.0 {
-                    break;
-                }
-                let next = t - value(t) / slope;
-                if !(next < f64::INFINITY && next > -f64::INFINITY) || (next - t).abs() <= 1e-16 * t.abs() {
-                    break;
-                }
-                t = next;
+            let next = [c - s * step, s + c * step];
+            let n = sqrt(next[0] * next[0] + next[1] * next[1]);
+            let next = [next[0] / n, next[1] / n];
+            let next_error = value(next);
+            if next_error.abs() >= error.abs() {
+                break;
             }
-            // The other two from the quotient t^2 + (p + t) t + (r + t (p + t)).
-            let (b, c) = (p + t, r + t * (p + t));
-            let half = -0.5 * b;
-            let discriminant = half * half - c;
-            if discriminant < 0.0 {
-                // A double root whose discriminant was lost to rounding still counts.
-                return if discriminant > -1e-12 * (half * half + c.abs()) { [t, half, half] } else { [t, t, t] };
-            }
-            let far = if half < 0.0 { half - sqrt(discriminant) } else { half + sqrt(discriminant) };
-            [t, far, if far == 0.0 { 0.0 } else { c / far }]
+            (at, error) = (next, next_error);
         }
+        at
+    }
+}
 
-        /// The two lines of a degenerate conic, row by row.
-        fn split(m: &[f64; 9]) -> [[f64; 3]; 2] {
-            let adjugate = [
-                m[5] * m[7] - m[4] * m[8],
-                m[1] * m[8] - m[2] * m[7],
-                m[2] * m[4] - m[1] * m[5],
-                0.0,
-                m[2] * m[6] - m[0] * m[8],
-                m[0] * m[5] - m[2] * m[3],
-                0.0,
-                0.0,
-                m[1] * m[3] - m[0] * m[4],
-            ];
-            // Minus the adjugate is the square p p^T of the point where the lines meet.
-            let square = [
-                [adjugate[0], adjugate[1], adjugate[2]],
-                [adjugate[1], adjugate[4], adjugate[5]],
-                [adjugate[2], adjugate[5], adjugate[8]],
-            ];
-            let mut i = 0;
-            for k in 1..3 {
-                if square[k][k] > square[i][i] {
-                    i = k;
-                }
-            }
-            let root = sqrt(square[i][i]);
-            let meeting = if root > 0.0 { square[i].map(|x| x / root) } else { [0.0; 3] };
-            let [x, y, z] = meeting;
-            let lines = [[m[0], m[1] - z, m[2] + y], [m[3] + z, m[4], m[5] - x], [m[6] - y, m[7] + x, m[8]]];
-            let (mut row, mut column) = (0, 0);
+mod chain {
+    //! Forward kinematics of the true chain, and the check and polish that every solution passes.
+
+    use super::math::{cos_sin, sqrt};
+
+    /// Most joints of a chain.
+    pub const MAX_JOINTS: usize = 12;
+
+    /// A solution is returned only when position (metres) and rotation (Frobenius norm) agree with the pose to this.
+    pub const TOLERANCE: f64 = 1e-9;
+
+    /// A solution that agrees to this is not polished.
+    pub const EXACT: f64 = 1e-10;
+
+    /// A rigid transform: rotation rows, then position.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Frame {
+        /// Rotation matrix, row by row.
+        pub rotation: [[f64; 3]; 3],
+        /// Position in metres.
+        pub position: [f64; 3],
+    }
+
+    /// A moving joint whose axis is the z axis of its own frame.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Link {
+        /// Pose of the joint frame in the frame after the previous joint.
+        pub previous_from_joint: Frame,
+        /// Whether it slides along its axis instead of turning about it.
+        pub slides: bool,
+        /// Which variable moves it.
+        pub variable: usize,
+        /// Joint value for each unit of the variable: 1 unless the joint follows another.
+        pub ratio: f64,
+    }
+
+    impl Frame {
+        /// The product of two transforms.
+        pub fn times(&self, other: &Frame) -> Frame {
+            let (a, b) = (&self.rotation, &other.rotation);
+            let mut out = *self;
             for i in 0..3 {
                 for j in 0..3 {
-                    if lines[i][j].abs() > lines[row][column].abs() {
-                        (row, column) = (i, j);
-                    }
+                    out.rotation[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
                 }
+                let p = &other.position;
+                out.position[i] += a[i][0] * p[0] + a[i][1] * p[1] + a[i][2] * p[2];
             }
-            [lines[row], [lines[0][column], lines[1][column], lines[2][column]]]
+            out
         }
 
-        /// Two Newton steps of the conic's equation along the circle, taken only where they help.
-        fn improve(q: [f64; 6], root: [f64; 2]) -> [f64; 2] {
-            let value = |[c, s]: [f64; 2]| (q[0] * c + q[1] * s + q[3]) * c + (q[2] * s + q[4]) * s + q[5];
-            let mut at = root;
-            let mut error = value(at);
-            for _ in 0..2 {
-                let [c, s] = at;
-                let slope = 2.0 * (q[2] - q[0]) * c * s + q[1] * (c * c - s * s) - q[3] * s + q[4] * c;
-                let step = -error / slope;
-                if !(step.abs() < 1e-2) {
-                    break;
+        /// This frame after its joint has moved; `step` is `[cos, sin]`, or `[length, _]` for a sliding joint.
+        fn moved(&self, slides: bool, step: [f64; 2]) -> Frame {
+            let mut out = *self;
+            for i in 0..3 {
+                let row = &mut out.rotation[i];
+                if slides {
+                    out.position[i] += step[0] * row[2];
+                } else {
+                    let [x, y, z] = *row;
+                    *row = [step[0] * x + step[1] * y, step[0] * y - step[1] * x, z];
                 }
-                let next = [c - s * step, s + c * step];
-                let n = sqrt(next[0] * next[0] + next[1] * next[1]);
-                let next = [next[0] / n, next[1] / n];
-                let next_error = value(next);
-                if next_error.abs() >= error.abs() {
-                    break;
-                }
-                (at, error) = (next, next_error);
             }
-            at
+            out
+        }
+
+        /// Distance of two poses: the larger of metres and Frobenius norm of the rotation difference.
+        pub fn distance(&self, other: &Frame) -> f64 {
+            let (mut rotation, mut position) = (0.0, 0.0);
+            for i in 0..3 {
+                for j in 0..3 {
+                    let d = self.rotation[i][j] - other.rotation[i][j];
+                    rotation += d * d;
+                }
+                let d = self.position[i] - other.position[i];
+                position += d * d;
+            }
+            // A NaN must not pass as the smaller of the two.
+            sqrt(if rotation > position { rotation } else { position }) + 0.0 * (rotation + position)
         }
     }
 
-    pub mod chain {
-        //! Forward kinematics of the true chain, and the check and polish that every solution passes.
-
-        use super::math::{cos_sin, sqrt};
-
-        /// Most joints of a chain.
-        pub const MAX_JOINTS: usize = 12;
-
-        /// A solution is returned only when position (metres) and rotation (Frobenius norm) agree with the pose to this.
-        pub const TOLERANCE: f64 = 1e-9;
-
-        /// A solution that agrees to this is not polished.
-        pub const EXACT: f64 = 1e-10;
-
-        /// A rigid transform: rotation rows, then position.
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct Frame {
-            /// Rotation matrix, row by row.
-            pub rotation: [[f64; 3]; 3],
-            /// Position in metres.
-            pub position: [f64; 3],
+    /// `base_from_tip` where each joint has moved by its `[cos, sin]` or `[length, _]`.
+    pub fn forward(links: &[Link], last_from_tip: &Frame, steps: &[[f64; 2]]) -> Frame {
+        let mut at = links[0].previous_from_joint.moved(links[0].slides, steps[0]);
+        for (link, step) in links.iter().zip(steps).skip(1) {
+            at = at.times(&link.previous_from_joint).moved(link.slides, *step);
         }
+        at.times(last_from_tip)
+    }
 
-        /// A moving joint whose axis is the z axis of its own frame.
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct Link {
-            /// Pose of the joint frame in the frame after the previous joint.
-            pub previous_from_joint: Frame,
-            /// Whether it slides along its axis instead of turning about it.
-            pub slides: bool,
-            /// Which variable moves it.
-            pub variable: usize,
-            /// Joint value for each unit of the variable: 1 unless the joint follows another.
-            pub ratio: f64,
-        }
-
-        impl Frame {
-            /// The product of two transforms.
-            pub fn times(&self, other: &Frame) -> Frame {
-                let (a, b) = (&self.rotation, &other.rotation);
-                let mut out = *self;
-                for i in 0..3 {
-                    for j in 0..3 {
-                        out.rotation[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
-                    }
-                    let p = &other.position;
-                    out.position[i] += a[i][0] * p[0] + a[i][1] * p[1] + a[i][2] * p[2];
-                }
-                out
-            }
-
-            /// This frame after its joint has moved; `step` is `[cos, sin]`, or `[length, _]` for a sliding joint.
-            fn moved(&self, slides: bool, step: [f64; 2]) -> Frame {
-                let mut out = *self;
-                for i in 0..3 {
-                    let row = &mut out.rotation[i];
-                    if slides {
-                        out.position[i] += step[0] * row[2];
-                    } else {
-                        let [x, y, z] = *row;
-                        *row = [step[0] * x + step[1] * y, step[0] * y - step[1] * x, z];
-                    }
-                }
-                out
-            }
-
-            /// Distance of two poses: the larger of metres and Frobenius norm of the rotation difference.
-            pub fn distance(&self, other: &Frame) -> f64 {
-                let (mut rotation, mut position) = (0.0, 0.0);
-                for i in 0..3 {
-                    for j in 0..3 {
-                        let d = self.rotation[i][j] - other.rotation[i][j];
-                        rotation += d * d;
-                    }
-                    let d = self.position[i] - other.position[i];
-                    position += d * d;
-                }
-                // A NaN must not pass as the smaller of the two.
-                sqrt(if rotation > position { rotation } else { position }) + 0.0 * (rotation + position)
-            }
-        }
-
-        /// `base_from_tip` where each joint has moved by its `[cos, sin]` or `[length, _]`.
-        pub fn forward(links: &[Link], last_from_tip: &Frame, steps: &[[f64; 2]]) -> Frame {
-            let mut at = links[0].previous_from_joint.moved(links[0].slides, steps[0]);
-            for (link, step) in links.iter().zip(steps).skip(1) {
-                at = at.times(&link.previous_from_joint).moved(link.slides, *step);
-            }
-            at.times(last_from_tip)
-        }
-
-        /// Brings `values` onto the pose by Newton steps on the true chain; the variables marked in `held` stay.
-        ///
-        /// Returns the distance that is left, the smallest met. Steps may go uphill: where two solutions fall together Newton's method
-        /// halves its distance to them from far out, but may first have to get there.
-        pub fn polish(
-            links: &[Link],
-            last_from_tip: &Frame,
-            base_from_tip: &Frame,
-            values: &mut [f64],
-            held: &[bool],
-        ) -> f64 {
-            // Directions in which the tip hardly moves are left alone.
-            const DAMPING: f64 = 1e-15;
-            let n = values.len();
-            let mut at = [0.0; MAX_JOINTS];
-            at[..n].copy_from_slice(values);
-            let mut best = f64::INFINITY;
-            for _ in 0..50 {
-                let (distance, error, columns) = linearise(links, last_from_tip, base_from_tip, &at[..n]);
-                if distance < best {
-                    let converged = distance < EXACT && distance > 0.1 * best;
-                    best = distance;
-                    values.copy_from_slice(&at[..n]);
-                    if best < 1e-12 || converged {
-                        break;
-                    }
-                } else if best < EXACT || !(distance < f64::INFINITY) {
+    /// Brings `values` onto the pose by Newton steps on the true chain; the variables marked in `held` stay.
+    ///
+    /// Returns the distance that is left, the smallest met. Steps may go uphill: where two solutions fall together Newton's method
+    /// halves its distance to them from far out, but may first have to get there.
+    pub fn polish(
+        links: &[Link],
+        last_from_tip: &Frame,
+        base_from_tip: &Frame,
+        values: &mut [f64],
+        held: &[bool],
+    ) -> f64 {
+        // Directions in which the tip hardly moves are left alone.
+        const DAMPING: f64 = 1e-15;
+        let n = values.len();
+        let mut at = [0.0; MAX_JOINTS];
+        at[..n].copy_from_slice(values);
+        let mut best = f64::INFINITY;
+        for _ in 0..50 {
+            let (distance, error, columns) = linearise(links, last_from_tip, base_from_tip, &at[..n]);
+            if distance < best {
+                let converged = distance < EXACT && distance > 0.1 * best;
+                best = distance;
+                values.copy_from_slice(&at[..n]);
+                if best < 1e-12 || converged {
                     break;
                 }
-                let mut normal = [[0.0; MAX_JOINTS]; MAX_JOINTS];
-                let mut right = [0.0; MAX_JOINTS];
-                for i in 0..n {
-                    if held[i] {
-                        normal[i][i] = 1.0;
-                        continue;
-                    }
-                    for j in 0..=i {
-                        if !held[j] {
-                            for k in 0..6 {
-                                normal[i][j] += columns[i][k] * columns[j][k];
-                            }
+            } else if best < EXACT || !(distance < f64::INFINITY) {
+                break;
+            }
+            let mut normal = [[0.0; MAX_JOINTS]; MAX_JOINTS];
+            let mut right = [0.0; MAX_JOINTS];
+            for i in 0..n {
+                if held[i] {
+                    normal[i][i] = 1.0;
+                    continue;
+                }
+                for j in 0..=i {
+                    if !held[j] {
+                        for k in 0..6 {
+                            normal[i][j] += columns[i][k] * columns[j][k];
                         }
                     }
-                    normal[i][i] += DAMPING;
-                    for k in 0..6 {
-                        right[i] += columns[i][k] * error[k];
-                    }
                 }
-                solve_symmetric(&mut normal, &mut right, n);
-                let mut longest = 0.0f64;
-                for i in 0..n {
-                    longest = longest.max(right[i].abs());
-                }
-                let scale = if longest > 0.3 { 0.3 / longest } else { 1.0 };
-                for i in 0..n {
-                    at[i] += scale * right[i];
+                normal[i][i] += DAMPING;
+                for k in 0..6 {
+                    right[i] += columns[i][k] * error[k];
                 }
             }
-            best
-        }
-
-        /// Distance to the pose, its six-vector (metres, radians), and the column of each variable.
-        fn linearise(
-            links: &[Link],
-            last_from_tip: &Frame,
-            base_from_tip: &Frame,
-            values: &[f64],
-        ) -> (f64, [f64; 6], [[f64; 6]; MAX_JOINTS]) {
-            let mut at = Frame { rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], position: [0.0; 3] };
-            let mut axes = [([0.0; 3], [0.0; 3]); MAX_JOINTS];
-            for (link, axis) in links.iter().zip(&mut axes) {
-                at = at.times(&link.previous_from_joint);
-                *axis = (at.rotation.map(|row| row[2]), at.position);
-                let value = link.ratio * values[link.variable];
-                at = at.moved(link.slides, if link.slides { [value, 0.0] } else { cos_sin(value) });
-            }
-            at = at.times(last_from_tip);
-            let mut error = [0.0; 6];
-            for i in 0..3 {
-                error[i] = base_from_tip.position[i] - at.position[i];
-            }
-            for column in 0..3 {
-                let a = at.rotation.map(|row| row[column]);
-                let b = base_from_tip.rotation.map(|row| row[column]);
-                let turn = cross(a, b);
-                for i in 0..3 {
-                    error[3 + i] += 0.5 * turn[i];
-                }
-            }
-            let mut columns = [[0.0; 6]; MAX_JOINTS];
-            for (link, (z, p)) in links.iter().zip(&axes) {
-                let column = &mut columns[link.variable];
-                let arm = [at.position[0] - p[0], at.position[1] - p[1], at.position[2] - p[2]];
-                let linear = if link.slides { *z } else { cross(*z, arm) };
-                for i in 0..3 {
-                    column[i] += link.ratio * linear[i];
-                    if !link.slides {
-                        column[3 + i] += link.ratio * z[i];
-                    }
-                }
-            }
-            (at.distance(base_from_tip), error, columns)
-        }
-
-        fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-        }
-
-        /// Solves a positive definite system in place (Cholesky); `right` becomes the solution.
-        fn solve_symmetric(m: &mut [[f64; MAX_JOINTS]; MAX_JOINTS], right: &mut [f64; MAX_JOINTS], n: usize) {
-            for j in 0..n {
-                for i in j..n {
-                    let mut sum = m[i][j];
-                    for k in 0..j {
-                        sum -= m[i][k] * m[j][k];
-                    }
-                    m[i][j] = if i == j { sqrt(if sum > 1e-18 { sum } else { 1e-18 }) } else { sum / m[j][j] };
-                }
-            }
+            solve_symmetric(&mut normal, &mut right, n);
+            let mut longest = 0.0f64;
             for i in 0..n {
-                for k in 0..i {
-                    right[i] -= m[i][k] * right[k];
-                }
-                right[i] /= m[i][i];
+                longest = longest.max(right[i].abs());
             }
-            for i in (0..n).rev() {
-                for k in i + 1..n {
-                    right[i] -= m[k][i] * right[k];
-                }
-                right[i] /= m[i][i];
+            let scale = if longest > 0.3 { 0.3 / longest } else { 1.0 };
+            for i in 0..n {
+                at[i] += scale * right[i];
             }
+        }
+        best
+    }
+
+    /// Distance to the pose, its six-vector (metres, radians), and the column of each variable.
+    fn linearise(
+        links: &[Link],
+        last_from_tip: &Frame,
+        base_from_tip: &Frame,
+        values: &[f64],
+    ) -> (f64, [f64; 6], [[f64; 6]; MAX_JOINTS]) {
+        let mut at = Frame { rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], position: [0.0; 3] };
+        let mut axes = [([0.0; 3], [0.0; 3]); MAX_JOINTS];
+        for (link, axis) in links.iter().zip(&mut axes) {
+            at = at.times(&link.previous_from_joint);
+            *axis = (at.rotation.map(|row| row[2]), at.position);
+            let value = link.ratio * values[link.variable];
+            at = at.moved(link.slides, if link.slides { [value, 0.0] } else { cos_sin(value) });
+        }
+        at = at.times(last_from_tip);
+        let mut error = [0.0; 6];
+        for i in 0..3 {
+            error[i] = base_from_tip.position[i] - at.position[i];
+        }
+        for column in 0..3 {
+            let a = at.rotation.map(|row| row[column]);
+            let b = base_from_tip.rotation.map(|row| row[column]);
+            let turn = cross(a, b);
+            for i in 0..3 {
+                error[3 + i] += 0.5 * turn[i];
+            }
+        }
+        let mut columns = [[0.0; 6]; MAX_JOINTS];
+        for (link, (z, p)) in links.iter().zip(&axes) {
+            let column = &mut columns[link.variable];
+            let arm = [at.position[0] - p[0], at.position[1] - p[1], at.position[2] - p[2]];
+            let linear = if link.slides { *z } else { cross(*z, arm) };
+            for i in 0..3 {
+                column[i] += link.ratio * linear[i];
+                if !link.slides {
+                    column[3 + i] += link.ratio * z[i];
+                }
+            }
+        }
+        (at.distance(base_from_tip), error, columns)
+    }
+
+    fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    }
+
+    /// Solves a positive definite system in place (Cholesky); `right` becomes the solution.
+    fn solve_symmetric(m: &mut [[f64; MAX_JOINTS]; MAX_JOINTS], right: &mut [f64; MAX_JOINTS], n: usize) {
+        for j in 0..n {
+            for i in j..n {
+                let mut sum = m[i][j];
+                for k in 0..j {
+                    sum -= m[i][k] * m[j][k];
+                }
+                m[i][j] = if i == j { sqrt(if sum > 1e-18 { sum } else { 1e-18 }) } else { sum / m[j][j] };
+            }
+        }
+        for i in 0..n {
+            for k in 0..i {
+                right[i] -= m[i][k] * right[k];
+            }
+            right[i] /= m[i][i];
+        }
+        for i in (0..n).rev() {
+            for k in i + 1..n {
+                right[i] -= m[k][i] * right[k];
+            }
+            right[i] /= m[i][i];
+        }
+    }
+}
+
+mod candidate {
+    //! From candidates to solutions: each is checked on the true chain, polished where it must be, and kept if it is new.
+
+    use super::chain::{EXACT, Frame, Link, MAX_JOINTS, TOLERANCE, forward, polish};
+    use super::math::{atan2, cos_sin};
+
+    /// Solutions closer than this in every variable (radians modulo a turn, metres) are the same one.
+    pub const SAME: f64 = 1e-7;
+
+    /// Slacks of the further attempts at a pose that gave no solution: at poses where several axes line up at once, rounding
+    /// alone can hide the roots of an equation.
+    pub const WIDER: [f64; 2] = [1e-5, 2e-3];
+
+    /// Wrong candidates of one attempt after which the rest is not looked at. Only attempts with wide slack at poses that cannot
+    /// be reached come near it; without it they could take milliseconds.
+    pub const MOST_MISSES: usize = 256;
+
+    /// The chain that solutions must satisfy.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Arm<'a> {
+        /// Moving joints, base to tip.
+        pub links: &'a [Link],
+        /// Pose of the tip in the frame after the last joint.
+        pub last_from_tip: &'a Frame,
+        /// For each variable, whether it is a length.
+        pub slides: &'a [bool],
+        /// For each variable, whether the caller gave it.
+        pub held: &'a [bool],
+    }
+
+    impl Arm<'_> {
+        /// `base_from_tip` for the `[cos, sin]` or `[length, _]` of each variable.
+        pub fn forward_steps(&self, steps: &[[f64; 2]]) -> Frame {
+            let mut moves = [[0.0; 2]; MAX_JOINTS];
+            for (link, step) in self.links.iter().zip(&mut moves) {
+                let [x, y] = steps[link.variable];
+                *step = if link.ratio == 1.0 {
+                    [x, y]
+                } else if link.slides {
+                    [link.ratio * x, 0.0]
+                } else {
+                    cos_sin(link.ratio * atan2(y, x))
+                };
+            }
+            forward(self.links, self.last_from_tip, &moves[..self.links.len()])
+        }
+
+        /// `base_from_tip` at these variable values.
+        pub fn forward_values(&self, values: &[f64]) -> Frame {
+            let mut steps = [[0.0; 2]; MAX_JOINTS];
+            for (i, value) in values.iter().enumerate() {
+                steps[i] = if self.slides[i] { [*value, 0.0] } else { cos_sin(*value) };
+            }
+            self.forward_steps(&steps[..values.len()])
+        }
+
+        /// Turns a candidate into variable values that reach the pose; says whether they do.
+        ///
+        /// `values` holds the given ones on entry.
+        pub fn settle(&self, base_from_tip: &Frame, steps: &[[f64; 2]], values: &mut [f64]) -> bool {
+            let distance = self.forward_steps(steps).distance(base_from_tip);
+            if !(distance < f64::INFINITY) {
+                return false;
+            }
+            for i in 0..values.len() {
+                if !self.held[i] {
+                    values[i] = if self.slides[i] { steps[i][0] } else { atan2(steps[i][1], steps[i][0]) };
+                }
+            }
+            if distance <= EXACT {
+                return true;
+            }
+            if !(polish(self.links, self.last_from_tip, base_from_tip, values, self.held) < TOLERANCE) {
+                return false;
+            }
+            for i in 0..values.len() {
+                if !self.slides[i] && !self.held[i] {
+                    values[i] = principal(values[i]);
+                }
+            }
+            true
+        }
+
+        /// Whether two solutions are the same one.
+        pub fn same(&self, a: &[f64], b: &[f64]) -> bool {
+            for i in 0..a.len() {
+                let gap = (a[i] - b[i]).abs();
+                let turned = (gap - core::f64::consts::TAU).abs();
+                if gap >= SAME && (self.slides[i] || turned >= SAME) {
+                    return false;
+                }
+            }
+            true
         }
     }
 
-    pub mod candidate {
-        //! From candidates to solutions: each is checked on the true chain, polished where it must be, and kept if it is new.
-
-        use super::chain::{EXACT, Frame, Link, MAX_JOINTS, TOLERANCE, forward, polish};
-        use super::math::{atan2, cos_sin};
-
-        /// Solutions closer than this in every variable (radians modulo a turn, metres) are the same one.
-        pub const SAME: f64 = 1e-7;
-
-        /// Slacks of the further attempts at a pose that gave no solution: at poses where several axes line up at once, rounding
-        /// alone can hide the roots of an equation.
-        pub const WIDER: [f64; 2] = [1e-5, 2e-3];
-
-        /// Wrong candidates of one attempt after which the rest is not looked at. Only attempts with wide slack at poses that cannot
-        /// be reached come near it; without it they could take milliseconds.
-        pub const MOST_MISSES: usize = 256;
-
-        /// The chain that solutions must satisfy.
-        #[derive(Clone, Copy, Debug)]
-        pub struct Arm<'a> {
-            /// Moving joints, base to tip.
-            pub links: &'a [Link],
-            /// Pose of the tip in the frame after the last joint.
-            pub last_from_tip: &'a Frame,
-            /// For each variable, whether it is a length.
-            pub slides: &'a [bool],
-            /// For each variable, whether the caller gave it.
-            pub held: &'a [bool],
+    /// The same angle in (-pi, pi].
+    fn principal(angle: f64) -> f64 {
+        use core::f64::consts::{PI, TAU};
+        let mut turned = angle;
+        while turned > PI {
+            turned -= TAU;
         }
-
-        impl Arm<'_> {
-            /// `base_from_tip` for the `[cos, sin]` or `[length, _]` of each variable.
-            pub fn forward_steps(&self, steps: &[[f64; 2]]) -> Frame {
-                let mut moves = [[0.0; 2]; MAX_JOINTS];
-                for (link, step) in self.links.iter().zip(&mut moves) {
-                    let [x, y] = steps[link.variable];
-                    *step = if link.ratio == 1.0 {
-                        [x, y]
-                    } else if link.slides {
-                        [link.ratio * x, 0.0]
-                    } else {
-                        cos_sin(link.ratio * atan2(y, x))
-                    };
-                }
-                forward(self.links, self.last_from_tip, &moves[..self.links.len()])
-            }
-
-            /// `base_from_tip` at these variable values.
-            pub fn forward_values(&self, values: &[f64]) -> Frame {
-                let mut steps = [[0.0; 2]; MAX_JOINTS];
-                for (i, value) in values.iter().enumerate() {
-                    steps[i] = if self.slides[i] { [*value, 0.0] } else { cos_sin(*value) };
-                }
-                self.forward_steps(&steps[..values.len()])
-            }
-
-            /// Turns a candidate into variable values that reach the pose; says whether they do.
-            ///
-            /// `values` holds the given ones on entry.
-            pub fn settle(&self, base_from_tip: &Frame, steps: &[[f64; 2]], values: &mut [f64]) -> bool {
-                let distance = self.forward_steps(steps).distance(base_from_tip);
-                if !(distance < f64::INFINITY) {
-                    return false;
-                }
-                for i in 0..values.len() {
-                    if !self.held[i] {
-                        values[i] = if self.slides[i] { steps[i][0] } else { atan2(steps[i][1], steps[i][0]) };
-                    }
-                }
-                if distance <= EXACT {
-                    return true;
-                }
-                if !(polish(self.links, self.last_from_tip, base_from_tip, values, self.held) < TOLERANCE) {
-                    return false;
-                }
-                for i in 0..values.len() {
-                    if !self.slides[i] && !self.held[i] {
-                        values[i] = principal(values[i]);
-                    }
-                }
-                true
-            }
-
-            /// Whether two solutions are the same one.
-            pub fn same(&self, a: &[f64], b: &[f64]) -> bool {
-                for i in 0..a.len() {
-                    let gap = (a[i] - b[i]).abs();
-                    let turned = (gap - core::f64::consts::TAU).abs();
-                    if gap >= SAME && (self.slides[i] || turned >= SAME) {
-                        return false;
-                    }
-                }
-                true
-            }
+        while turned <= -PI {
+            turned += TAU;
         }
-
-        /// The same angle in (-pi, pi].
-        fn principal(angle: f64) -> f64 {
-            use core::f64::consts::{PI, TAU};
-            let mut turned = angle;
-            while turned > PI {
-                turned -= TAU;
-            }
-            while turned <= -PI {
-                turned += TAU;
-            }
-            turned
-        }
+        turned
     }
 }

@@ -1,0 +1,107 @@
+//! One arm, one set of poses, all solvers.
+
+use std::time::Instant;
+
+use robotc_core::{Pose, SerialChain};
+use robotc_ik_bench::Arm;
+use robotc_ikgen::check;
+use robotc_ikgen::report::poses::PoseSet;
+
+use crate::contender::{Contender, Task};
+
+/// A solver in the race.
+pub struct Entrant {
+    /// Its name in the table.
+    pub name: String,
+    /// What is called for one pose.
+    pub solver: Box<dyn Contender>,
+    /// What is called for all of them at once, if that is how it is timed; returns the number of answers.
+    pub batch: Option<Box<dyn FnMut() -> usize>>,
+}
+
+/// What one solver did on one set.
+pub struct Row {
+    /// The arm.
+    pub arm: &'static str,
+    /// The set of poses.
+    pub set: &'static str,
+    /// The solver.
+    pub solver: String,
+    /// Poses of the set.
+    pub poses: usize,
+    /// Poses with an answer that reaches them to 1e-6.
+    pub solved: usize,
+    /// Poses whose generating joint vector is among the answers; of the random set only.
+    pub recovered: Option<usize>,
+    /// Answers, not marked as least-squares, that miss by more than 1e-6.
+    pub wrong: usize,
+    /// Answers per pose.
+    pub mean_solutions: f64,
+    /// Median over poses of the fastest of five calls, nanoseconds.
+    pub median_ns: f64,
+}
+
+/// An answer reaches a pose if it is this near: metres, and Frobenius norm of the rotation difference.
+const TOLERANCE: f64 = 1e-6;
+
+/// Times and judges all solvers; a peer that solves another arm is not judged.
+pub fn run(arm: &Arm, chain: &SerialChain, set: &PoseSet, tasks: &[Task], entrants: &mut [Entrant], all_judged: bool) -> Vec<Row> {
+    for entrant in entrants.iter_mut() {
+        entrant.solver.load(tasks);
+    }
+    let clock = overhead();
+    let mut fastest = vec![vec![f64::INFINITY; tasks.len()]; entrants.len()];
+    for _ in 0..5 {
+        for task in 0..tasks.len() {
+            for (entrant, fastest) in entrants.iter_mut().zip(&mut fastest) {
+                let start = Instant::now();
+                let found = entrant.solver.solve(task);
+                let elapsed = start.elapsed().as_nanos() as f64 - clock;
+                std::hint::black_box(found);
+                fastest[task] = fastest[task].min(elapsed);
+            }
+        }
+    }
+    let slides = vec![false; chain.variables.len()];
+    let mut rows = Vec::new();
+    for (entrant, mut times) in entrants.iter_mut().zip(fastest) {
+        times.sort_by(f64::total_cmp);
+        let mut row = Row {
+            arm: arm.name,
+            set: set.name,
+            solver: entrant.name.clone(),
+            poses: tasks.len(),
+            solved: 0,
+            recovered: set.regular.then_some(0),
+            wrong: 0,
+            mean_solutions: 0.0,
+            median_ns: times[times.len() / 2],
+        };
+        let judged = all_judged || entrant.name.starts_with("robotc");
+        for (i, task) in tasks.iter().enumerate().filter(|_| judged) {
+            entrant.solver.solve(i);
+            let pose: Pose = chain.forward(&task.joints);
+            let answers = entrant.solver.answers();
+            let right = answers.iter().filter(|q| check::distance(chain, q, &pose) <= TOLERANCE).count();
+            row.solved += usize::from(right > 0);
+            row.wrong += answers.len() - right;
+            row.mean_solutions += answers.len() as f64 / tasks.len() as f64;
+            if let Some(recovered) = &mut row.recovered {
+                *recovered += usize::from(answers.iter().any(|q| check::same(q, &task.joints, &slides, 1e-6)));
+            }
+        }
+        rows.push(row);
+    }
+    rows
+}
+
+/// Nanoseconds that reading the clock takes.
+fn overhead() -> f64 {
+    let once = |_| {
+        let start = Instant::now();
+        start.elapsed().as_nanos() as f64
+    };
+    let mut times: Vec<f64> = (0..10_001).map(once).collect();
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}

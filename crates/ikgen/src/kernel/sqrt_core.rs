@@ -1,0 +1,47 @@
+//! The square root from sums and products alone, for generated files that may not use `std`.
+
+use super::math::product_rest;
+
+/// Square root, correctly rounded except just below powers of four (there it may be the power of two); 0 for arguments that are
+/// negative or below 1e-300.
+pub fn sqrt(x: f64) -> f64 {
+    if !(x > 1e-300) {
+        return 0.0;
+    }
+    if x == f64::INFINITY {
+        return x;
+    }
+    // Halving the exponent gives the inverse root within 4 %; each Newton step doubles the digits.
+    let mut inverse = f64::from_bits(0x5fe6_eb50_c7b5_37a9 - (x.to_bits() >> 1));
+    let half = 0.5 * x;
+    for _ in 0..4 {
+        inverse *= 1.5 - half * inverse * inverse;
+    }
+    let root = x * inverse;
+    // What is missing, with the square taken exactly.
+    let rest = (x - root * root) - product_rest(root, root);
+    root + 0.5 * inverse * rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use robotc_core::Seed;
+
+    #[test]
+    fn gives_the_bits_of_the_platform() {
+        let mut rng = Seed::new(23).rng();
+        for _ in 0..200_000 {
+            let x = rng.range(0.5, 2.0) * 10f64.powf(rng.range(-290.0, 290.0));
+            assert_eq!(sqrt(x).to_bits(), x.sqrt().to_bits(), "{x:?}");
+        }
+        for k in 1..2000u32 {
+            let x = f64::from(k * k);
+            assert_eq!(sqrt(x), f64::from(k));
+            let (above, below) = (f64::from_bits(x.to_bits() + 1), f64::from_bits(x.to_bits() - 1));
+            assert_eq!(sqrt(above), above.sqrt());
+            assert!(sqrt(below) == below.sqrt() || k.is_power_of_two());
+        }
+        assert_eq!([sqrt(0.0), sqrt(-1.0), sqrt(f64::NAN)], [0.0; 3]);
+    }
+}
