@@ -416,7 +416,13 @@ mod math {
             return 0.0;
         }
         // Quotients of numbers near the ends of the range lose digits.
-        let scale = if large < 1e-280 { 1e200 } else if large > 1e280 { 1e-200 } else { 1.0 };
+        let scale = if large < 1e-280 {
+            1e200
+        } else if large > 1e280 {
+            1e-200
+        } else {
+            1.0
+        };
         let (large, small) = (large * scale, small * scale);
         let ratio = small / large;
         let k = if ratio < 0.125 { 0 } else { (ratio * 8.0 + 0.5) as usize };
