@@ -4,6 +4,7 @@
 
 pub mod arm;
 pub mod budget;
+pub mod caging;
 pub mod cartesian;
 pub mod constraint;
 pub mod edge;

@@ -1,0 +1,61 @@
+//! The same task with a firm grasp: what relaxed planning is compared with.
+
+use super::task::{ArticulatedTask, CagedState};
+use crate::edge::Obstruction;
+use crate::space::Space;
+
+/// A task in which the grasp never changes. Every grasp is taken to be in contact, so that all of them are tried.
+pub struct FixedGrasp<'t, T: ?Sized> {
+    task: &'t mut T,
+    own: Vec<[usize; 1]>,
+}
+
+impl<'t, T: ArticulatedTask + ?Sized> FixedGrasp<'t, T> {
+    /// The same task without changes of grasp.
+    pub fn new(task: &'t mut T) -> Self {
+        let own = (0..task.grasps()).map(|g| [g]).collect();
+        Self { task, own }
+    }
+}
+
+impl<T: ArticulatedTask + ?Sized> ArticulatedTask for FixedGrasp<'_, T> {
+    fn arm_space(&self) -> &Space {
+        self.task.arm_space()
+    }
+
+    fn steps(&self) -> usize {
+        self.task.steps()
+    }
+
+    fn grasps(&self) -> usize {
+        self.task.grasps()
+    }
+
+    fn is_contact(&self, _: usize) -> bool {
+        true
+    }
+
+    fn adjacent(&self, grasp: usize) -> &[usize] {
+        &self.own[grasp]
+    }
+
+    fn solutions(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
+        self.task.solutions(step, grasp, near)
+    }
+
+    fn motion(&mut self, from: &CagedState, to: &CagedState) -> Result<(), Obstruction> {
+        self.task.motion(from, to)
+    }
+
+    fn longest_motion(&self) -> f64 {
+        self.task.longest_motion()
+    }
+
+    fn neighbours(&self, step: usize) -> Vec<usize> {
+        self.task.neighbours(step)
+    }
+
+    fn remaining(&self, step: usize) -> usize {
+        self.task.remaining(step)
+    }
+}

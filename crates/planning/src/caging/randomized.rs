@@ -1,0 +1,247 @@
+//! Randomized A*: like A*, with actions drawn at random (thesis algorithm 3.8; Diankov and Kuffner, "Randomized statistical
+//! path planning", 2007).
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use robotc_core::rng::Rng;
+
+use super::task::{
+    ArticulatedTask, CagedState, CagingFailure, CagingFailureReason, CagingSolution, CagingStatistics, joined,
+};
+use crate::budget::Budget;
+
+/// Parameters of the search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RandomizedOptions {
+    /// New states drawn from a state before the next best one is looked at.
+    pub children: u32,
+    /// Cost of one object step that is left, in units of the longest motion of the arm; what is above the truth makes the
+    /// search greedy.
+    pub heuristic: f64,
+    /// Two states of the same step and grasp nearer than this are the same, in units of the longest motion.
+    pub same: f64,
+    /// Draws after which the search gives up.
+    pub max_draws: u32,
+}
+
+impl Default for RandomizedOptions {
+    fn default() -> Self {
+        Self { children: 3, heuristic: 2.0, same: 0.1, max_draws: 50_000 }
+    }
+}
+
+/// Where the search begins.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CageStart {
+    /// The object at this step, in any grasp.
+    Step(usize),
+    /// The gripper around the object already.
+    State(CagedState),
+}
+
+/// Finds a motion of the object to its goal, with grasps that change within the cage on the way.
+///
+/// From each state pairs of a neighbouring step and an adjacent grasp are drawn without replacement, those at the goal in
+/// contact; the arm configuration is the nearest that can be reached. The search fails only when all are used up, or at
+/// its limits.
+pub fn randomized_search<T: ArticulatedTask + ?Sized>(
+    task: &mut T,
+    start: &CageStart,
+    options: &RandomizedOptions,
+    budget: &Budget<'_>,
+    rng: &mut Rng,
+) -> Result<CagingSolution, CagingFailure> {
+    let mut search = Search {
+        nodes: Vec::new(),
+        by_step: vec![Vec::new(); task.steps()],
+        open: BinaryHeap::new(),
+        task,
+        options,
+        statistics: CagingStatistics::default(),
+    };
+    let outcome = search.run(start, budget, rng);
+    match outcome {
+        Ok(node) => Ok(CagingSolution { states: search.path_to(node), statistics: search.statistics }),
+        Err(reason) => {
+            let nearest = (0..search.nodes.len()).min_by_key(|&n| search.remaining(n));
+            let partial = nearest.map(|n| search.path_to(n)).unwrap_or_default();
+            Err(CagingFailure { reason, partial, statistics: search.statistics })
+        }
+    }
+}
+
+struct Node {
+    state: CagedState,
+    parent: Option<usize>,
+    /// Length of the arm's path so far.
+    cost: f64,
+    /// Pairs of step and grasp not drawn yet.
+    pool: Vec<(usize, usize)>,
+}
+
+/// A place in the queue; smaller totals come first, then older nodes.
+#[derive(PartialEq)]
+struct Entry {
+    total: f64,
+    node: usize,
+}
+
+impl Eq for Entry {}
+
+impl PartialOrd for Entry {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Entry {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.total.total_cmp(&self.total).then(other.node.cmp(&self.node))
+    }
+}
+
+struct Search<'t, T: ?Sized> {
+    task: &'t mut T,
+    options: &'t RandomizedOptions,
+    nodes: Vec<Node>,
+    /// Nodes of each object step.
+    by_step: Vec<Vec<usize>>,
+    open: BinaryHeap<Entry>,
+    statistics: CagingStatistics,
+}
+
+impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
+    fn run(
+        &mut self,
+        start: &CageStart,
+        budget: &Budget<'_>,
+        rng: &mut Rng,
+    ) -> Result<usize, CagingFailureReason> {
+        let goal = self.task.steps() - 1;
+        // Grasps at the start that are still to be tried, when there is a choice.
+        let mut roots: Vec<usize> = Vec::new();
+        let first = match start {
+            CageStart::Step(step) => {
+                roots = (0..self.task.grasps()).collect();
+                *step
+            }
+            CageStart::State(state) => {
+                self.add(state.clone(), None);
+                state.step
+            }
+        };
+        let mut draws = 0;
+        loop {
+            // Another root while nothing better is open: it costs as much as a state at the start.
+            let best = self.open.peek().map_or(f64::INFINITY, |entry| entry.total);
+            if !roots.is_empty() && best > self.heuristic(first) {
+                budget.check().map_err(CagingFailureReason::Interrupted)?;
+                let grasp = roots.swap_remove(rng.below(roots.len()));
+                if first != goal || self.task.is_contact(grasp) {
+                    for q in self.solutions(first, grasp, None) {
+                        self.add(CagedState { step: first, grasp, q }, None);
+                    }
+                }
+                continue;
+            }
+            let Some(Entry { total, node }) = self.open.pop() else {
+                return Err(match (self.nodes.is_empty(), first == goal) {
+                    (false, _) => CagingFailureReason::NoPath,
+                    (true, true) => CagingFailureReason::NoContact,
+                    (true, false) => CagingFailureReason::OutOfReach { step: first },
+                });
+            };
+            let here = &self.nodes[node].state;
+            if here.step == goal && self.task.is_contact(here.grasp) {
+                return Ok(node);
+            }
+            let mut children = 0;
+            while children < self.options.children && !self.nodes[node].pool.is_empty() {
+                budget.check().map_err(CagingFailureReason::Interrupted)?;
+                draws += 1;
+                if draws > self.options.max_draws {
+                    return Err(CagingFailureReason::Iterations);
+                }
+                children += u32::from(self.draw_from(node, rng));
+            }
+            if !self.nodes[node].pool.is_empty() {
+                // Later it may be worth another look.
+                let penalty = self.options.heuristic * self.task.longest_motion();
+                self.open.push(Entry { total: total + penalty, node });
+            }
+        }
+    }
+
+    /// One draw without replacement; whether it gave a new state (SampleNN).
+    fn draw_from(&mut self, node: usize, rng: &mut Rng) -> bool {
+        let pool = &mut self.nodes[node].pool;
+        let (step, grasp) = pool.swap_remove(rng.below(pool.len()));
+        let from = self.nodes[node].state.clone();
+        for q in self.solutions(step, grasp, Some(&from.q)) {
+            let to = CagedState { step, grasp, q };
+            if self.is_known(&to) {
+                return false;
+            }
+            if joined(&mut *self.task, &from, &to, &mut self.statistics) {
+                self.add(to, Some(node));
+                return true;
+            }
+        }
+        false
+    }
+
+    fn solutions(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
+        self.statistics.inverse_calls += 1;
+        let solutions = self.task.solutions(step, grasp, near);
+        self.statistics.states += solutions.len() as u32;
+        solutions
+    }
+
+    fn is_known(&self, state: &CagedState) -> bool {
+        let same = self.options.same * self.task.longest_motion();
+        self.by_step[state.step].iter().map(|&n| &self.nodes[n].state).any(|known| {
+            known.grasp == state.grasp && self.task.arm_space().distance(&known.q, &state.q) < same
+        })
+    }
+
+    fn add(&mut self, state: CagedState, parent: Option<usize>) {
+        let cost = parent.map_or(0.0, |p| {
+            let before = &self.nodes[p];
+            before.cost + self.task.arm_space().distance(&before.state.q, &state.q)
+        });
+        let goal = self.task.steps() - 1;
+        let mut pool = Vec::new();
+        for step in self.task.neighbours(state.step) {
+            for &grasp in self.task.adjacent(state.grasp) {
+                let useful = step != goal || self.task.is_contact(grasp);
+                if useful && (step, grasp) != (state.step, state.grasp) {
+                    pool.push((step, grasp));
+                }
+            }
+        }
+        let node = self.nodes.len();
+        self.by_step[state.step].push(node);
+        self.open.push(Entry { total: cost + self.heuristic(state.step), node });
+        self.nodes.push(Node { state, parent, cost, pool });
+    }
+
+    fn heuristic(&self, step: usize) -> f64 {
+        self.options.heuristic * self.task.longest_motion() * self.task.remaining(step) as f64
+    }
+
+    fn remaining(&self, node: usize) -> usize {
+        self.task.remaining(self.nodes[node].state.step)
+    }
+
+    fn path_to(&self, node: usize) -> Vec<CagedState> {
+        let mut path = Vec::new();
+        let mut at = Some(node);
+        while let Some(n) = at {
+            path.push(self.nodes[n].state.clone());
+            at = self.nodes[n].parent;
+        }
+        path.reverse();
+        path
+    }
+}
