@@ -334,7 +334,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
+        #![proptest_config(crate::properties::cases(64))]
         #[test]
         fn inverse_solutions_reach_the_pose_and_recover_the_joints(
             q in prop::array::uniform6(-1.9..1.9f64),

@@ -14,6 +14,8 @@ pub mod grasp;
 pub mod jitter;
 pub mod manipulation;
 pub mod mechanism;
+#[cfg(test)]
+mod properties;
 pub mod rrt;
 pub mod scene;
 pub mod smooth;

@@ -184,6 +184,7 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::properties::cases(256))]
         #[test]
         fn the_metric_is_symmetric_and_satisfies_the_triangle_inequality(
             a in prop::array::uniform2(-9.0..9.0f64),

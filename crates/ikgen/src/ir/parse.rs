@@ -15,6 +15,9 @@ pub struct TextError {
 /// Blocks and parentheses nest at most this deep, so that no text can exhaust the stack.
 const MAX_DEPTH: usize = 200;
 
+/// Expressions are at most this deep, a sum of many terms counted one deeper for each: what walks them does so recursively.
+const MAX_EXPR_DEPTH: u32 = 1000;
+
 #[derive(Debug, Clone, PartialEq)]
 enum Token {
     Word(String),
@@ -31,6 +34,8 @@ struct Reader {
     at: usize,
     depth: usize,
     program: Program,
+    /// Depth of each expression of the program.
+    expr_depths: Vec<u32>,
 }
 
 pub(super) fn program(text: &str) -> Result<Program, TextError> {
@@ -44,7 +49,7 @@ pub(super) fn program(text: &str) -> Result<Program, TextError> {
         names: Vec::new(),
         body: Vec::new(),
     };
-    let mut r = Reader { tokens: tokens(text)?, at: 0, depth: 0, program };
+    let mut r = Reader { tokens: tokens(text)?, at: 0, depth: 0, program, expr_depths: Vec::new() };
     r.word("ikgen")?;
     if r.number()? != 1.0 {
         return Err(r.error("this version reads format 1"));
@@ -94,7 +99,8 @@ fn tokens(text: &str) -> Result<Vec<(usize, Token)>, TextError> {
                 (length, Token::Note(rest[1..length].trim().to_owned()))
             }
             '"' => {
-                let Some(end) = rest[1..].find('"') else {
+                let Some(end) = rest[1..].find(['"', '\n']).filter(|end| rest[1 + end..].starts_with('"'))
+                else {
                     return Err(TextError { line, message: "a quote is not closed".into() });
                 };
                 (end + 2, Token::Text(rest[1..=end].to_owned()))
@@ -195,6 +201,23 @@ impl Reader {
     fn deeper(&mut self) -> Result<(), TextError> {
         self.depth += 1;
         if self.depth > MAX_DEPTH { Err(self.error("nested too deeply")) } else { Ok(()) }
+    }
+
+    /// A number; minus zero becomes zero.
+    fn constant(&mut self, x: f64) -> Result<Expr, TextError> {
+        self.node(Node::Const((x + 0.0).to_bits()))
+    }
+
+    fn node(&mut self, node: Node) -> Result<Expr, TextError> {
+        let depth = node.operands().map(|e| self.expr_depths[e.0 as usize]).max().map_or(0, |d| d + 1);
+        if depth > MAX_EXPR_DEPTH {
+            return Err(self.error("an expression has too many terms"));
+        }
+        let e = self.program.exprs.intern(node);
+        if e.0 as usize == self.expr_depths.len() {
+            self.expr_depths.push(depth);
+        }
+        Ok(e)
     }
 
     fn block(&mut self) -> Result<Block, TextError> {
@@ -301,7 +324,7 @@ impl Reader {
             };
             self.next();
             let right = self.product()?;
-            left = self.program.exprs.intern(Node::Binary(f, left, right));
+            left = self.node(Node::Binary(f, left, right))?;
         }
         self.depth -= 1;
         Ok(left)
@@ -317,21 +340,21 @@ impl Reader {
             };
             self.next();
             let right = self.factor()?;
-            left = self.program.exprs.intern(Node::Binary(f, left, right));
+            left = self.node(Node::Binary(f, left, right))?;
         }
     }
 
     fn factor(&mut self) -> Result<Expr, TextError> {
         self.deeper()?;
         let e = match self.next() {
-            Token::Number(x) => self.program.exprs.constant(x),
+            Token::Number(x) => self.constant(x)?,
             Token::Sign('-') => {
                 if let Token::Number(x) = *self.peek() {
                     self.next();
-                    self.program.exprs.constant(-x)
+                    self.constant(-x)?
                 } else {
                     let a = self.factor()?;
-                    self.program.exprs.intern(Node::Unary(Unary::Neg, a))
+                    self.node(Node::Unary(Unary::Neg, a))?
                 }
             }
             Token::Sign('(') => {
@@ -353,7 +376,7 @@ impl Reader {
             self.sign('(')?;
             let a = self.sum()?;
             self.sign(')')?;
-            return Ok(self.program.exprs.intern(Node::Unary(f, a)));
+            return self.node(Node::Unary(f, a));
         }
         if let Some((_, f)) = binary.into_iter().find(|(w, _)| *w == word) {
             self.sign('(')?;
@@ -361,13 +384,13 @@ impl Reader {
             self.sign(',')?;
             let b = self.sum()?;
             self.sign(')')?;
-            return Ok(self.program.exprs.intern(Node::Binary(f, a, b)));
+            return self.node(Node::Binary(f, a, b));
         }
         if let Some(node) = leaf(word) {
-            return Ok(self.program.exprs.intern(node));
+            return self.node(node);
         }
         match self.program.names.iter().position(|n| n == word) {
-            Some(i) => Ok(self.program.exprs.intern(Node::Var(Var(i as u32)))),
+            Some(i) => self.node(Node::Var(Var(i as u32))),
             None => Err(self.error(format!("{word} is not bound here"))),
         }
     }

@@ -1,5 +1,6 @@
 //! Programs as straight runs of three-address instructions over a small register file.
 
+use super::{MOST_ROOTS, SIX_ROOTS, take};
 use crate::ir::{Binary, Block, Expr, Node, Program, RootKind, Stmt, Unary, Value, Var};
 use crate::kernel::chain::{Frame, MAX_JOINTS};
 use crate::kernel::six::{NUMBERS, six_of};
@@ -137,7 +138,8 @@ impl Bytecode {
         registers[9..12].copy_from_slice(&base_from_tip.position);
         registers[POSE_REGISTERS..self.first_constant].copy_from_slice(free);
         registers[self.first_constant..][..self.constants.len()].copy_from_slice(&self.constants);
-        self.block(&self.body, registers, slack, offer)
+        let mut left = MOST_ROOTS;
+        self.block(&self.body, registers, slack, &mut left, offer)
     }
 
     fn block<const N: usize>(
@@ -145,6 +147,7 @@ impl Bytecode {
         items: &[Item],
         x: &mut [f64; N],
         slack: f64,
+        left: &mut u32,
         offer: &mut impl FnMut(&[[f64; 2]]) -> bool,
     ) -> usize {
         // N is a power of two: the mask replaces the bounds check.
@@ -174,7 +177,7 @@ impl Bytecode {
                     let roots = kind.solve(&args.map(|i| x[at(i)]), slack);
                     let before = accepted;
                     for i in 0..roots.count() {
-                        if roots.free && accepted > before {
+                        if roots.free && accepted > before || !take(left, 1) {
                             break;
                         }
                         let root = roots.get(i);
@@ -182,25 +185,28 @@ impl Bytecode {
                         if *outputs > 1 {
                             x[at(out[1])] = root[1];
                         }
-                        accepted += self.block(body, x, slack, offer);
+                        accepted += self.block(body, x, slack, left, offer);
                     }
                 }
                 Item::Six { args, out, body } => {
+                    if !take(left, SIX_ROOTS) {
+                        continue;
+                    }
                     let found = six_of(&args.map(|i| x[at(i)]), slack);
                     for i in 0..found.count() {
                         for (to, value) in out.iter().zip(found.get(i).into_iter().flatten()) {
                             x[at(*to)] = value;
                         }
-                        accepted += self.block(body, x, slack, offer);
+                        accepted += self.block(body, x, slack, left, offer);
                     }
                 }
                 Item::IfZero { value, tolerance, then, otherwise } => {
                     let zero = x[at(*value)].abs() < *tolerance;
-                    accepted += self.block(if zero { then } else { otherwise }, x, slack, offer);
+                    accepted += self.block(if zero { then } else { otherwise }, x, slack, left, offer);
                 }
                 Item::Fallback { first, otherwise } => {
-                    let found = self.block(first, x, slack, offer);
-                    accepted += if found > 0 { found } else { self.block(otherwise, x, slack, offer) };
+                    let found = self.block(first, x, slack, left, offer);
+                    accepted += if found > 0 { found } else { self.block(otherwise, x, slack, left, offer) };
                 }
                 Item::Emit { from, to } => {
                     let mut candidate = [[0.0; 2]; MAX_JOINTS];

@@ -1,5 +1,6 @@
 //! The reference interpreter: walks the program as it is written, without any preparation.
 
+use super::{MOST_ROOTS, SIX_ROOTS, take};
 use crate::ir::{Block, Expr, Node, Program, RootKind, Stmt, Value};
 use crate::kernel::chain::{Frame, MAX_JOINTS};
 use crate::kernel::six::six_of;
@@ -14,8 +15,16 @@ pub fn run(
     slack: f64,
     offer: &mut dyn FnMut(&[[f64; 2]]) -> bool,
 ) -> usize {
-    let mut run =
-        Run { program, base_from_tip, free, slack, vars: vec![0.0; program.names.len()], offer, accepted: 0 };
+    let mut run = Run {
+        program,
+        base_from_tip,
+        free,
+        slack,
+        vars: vec![0.0; program.names.len()],
+        left: MOST_ROOTS,
+        offer,
+        accepted: 0,
+    };
     run.block(&program.body);
     run.accepted
 }
@@ -26,6 +35,7 @@ struct Run<'a> {
     free: &'a [f64],
     slack: f64,
     vars: Vec<f64>,
+    left: u32,
     offer: &'a mut dyn FnMut(&[[f64; 2]]) -> bool,
     accepted: usize,
 }
@@ -41,6 +51,9 @@ impl Run<'_> {
                     self.block(if zero { then } else { otherwise });
                 }
                 Stmt::ForEach { kind: RootKind::Six, args, out, body } => {
+                    if !take(&mut self.left, SIX_ROOTS) {
+                        continue;
+                    }
                     let args: Vec<f64> = args.iter().map(|e| self.value(*e)).collect();
                     let numbers = args.try_into().expect("validated");
                     let found = six_of(&numbers, self.slack);
@@ -56,7 +69,7 @@ impl Run<'_> {
                     let roots = kind.solve(&args, self.slack);
                     let before = self.accepted;
                     for i in 0..roots.count() {
-                        if roots.free && self.accepted > before {
+                        if roots.free && self.accepted > before || !take(&mut self.left, 1) {
                             break;
                         }
                         for (var, x) in out.iter().zip(roots.get(i)) {

@@ -14,6 +14,22 @@ use robotc_core::Pose;
 
 use crate::kernel::chain::Frame;
 
+/// Roots that one run of a program follows at most, all equations together: a program can nest equations deeper than anybody
+/// could wait for. Those of real arms come to some thousands where everything is singular at once.
+pub(crate) const MOST_ROOTS: u32 = 1 << 16;
+
+/// What solving for six unknowns at once counts as, in roots: it takes about that much longer.
+pub(crate) const SIX_ROOTS: u32 = 1 << 10;
+
+/// Takes this many from the roots that are left; `false`, and nothing taken, when there are fewer.
+pub(crate) fn take(left: &mut u32, count: u32) -> bool {
+    let enough = *left >= count;
+    if enough {
+        *left -= count;
+    }
+    enough
+}
+
 /// A pose as the kernel sees it.
 pub(crate) fn frame(pose: &Pose) -> Frame {
     let r = pose.rotation.to_rotation_matrix();

@@ -1,6 +1,8 @@
 //! The text form, the validator and the passes.
 
 use proptest::prelude::*;
+use robotc_ikgen::kernel::chain::Frame;
+use robotc_ikgen::run::{Bytecode, interpreter};
 use robotc_ikgen::{Options, Program, compile, passes};
 
 use crate::{arms, golden};
@@ -63,10 +65,38 @@ fn bad_programs_get_a_line_and_a_reason() {
     }
     let deep = format!("let a = {}px{}", "(".repeat(5000), ")".repeat(5000));
     assert!(program(&deep).unwrap_err().contains("nested too deeply"));
+    let long = format!("let a = px{}", " + px".repeat(100_000));
+    assert!(program(&long).unwrap_err().contains("too many terms"));
+    assert!(
+        program("\n# a line\nlet a = \"two\nlines\"").unwrap_err().contains("line 10: a quote is not closed")
+    );
+}
+
+/// Equations nested so deeply that their roots could not be followed in a lifetime: both engines give up at the same root.
+#[test]
+fn programs_that_would_run_forever_end() {
+    let depth = 40;
+    let open: String = (0..depth).map(|i| format!("align(0.0, 0.0) -> c{i} s{i} {{\n")).collect();
+    let text = format!(
+        "ikgen 1\nclass \"t\"\nvariables 1\nfree []\nsnap 0.0\nslack 0.0\n{{\n{open}emit angle(c0, s39)\n{}}}\n",
+        "}\n".repeat(depth)
+    );
+    let program = Program::from_text(&text).unwrap();
+    let pose = Frame { rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], position: [0.0; 3] };
+    let mut offered = [0, 0];
+    Bytecode::new(&program).unwrap().run(&pose, &[], 0.0, &mut |_: &[[f64; 2]]| {
+        offered[0] += 1;
+        false
+    });
+    interpreter::run(&program, &pose, &[], 0.0, &mut |_| {
+        offered[1] += 1;
+        false
+    });
+    assert!(offered[0] > 10_000 && offered[0] == offered[1], "{offered:?}");
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(crate::properties::cases(200))]
 
     /// Whatever happens to a text, reading it ends in a program or an error.
     #[test]

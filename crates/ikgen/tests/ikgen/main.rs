@@ -7,4 +7,5 @@ mod classes;
 mod generated;
 mod golden;
 mod language;
+mod properties;
 mod real_arms;

@@ -22,6 +22,7 @@ mod cards;
 mod garbage;
 mod rebuild;
 mod schema;
+mod transfer;
 mod verify;
 
 use std::fs::File;
@@ -31,9 +32,10 @@ use std::sync::{Mutex, MutexGuard};
 use rusqlite::{Connection, ErrorCode, OptionalExtension, Transaction, params};
 use thiserror::Error;
 
-pub use archive::{ArchiveError, Transfer};
+pub use archive::{Archive, ArchiveError, Archived};
 pub use garbage::Garbage;
 pub use rebuild::Rebuilt;
+pub use transfer::Transfer;
 pub use verify::{Finding, Repair, Verification};
 
 use crate::key::{ContentHash, Key};

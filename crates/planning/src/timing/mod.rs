@@ -164,7 +164,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(60))]
+        #![proptest_config(crate::properties::cases(60))]
         #[test]
         fn limits_hold_everywhere(
             points in prop::collection::vec(prop::array::uniform2(0.0..10.0f64), 2..7),

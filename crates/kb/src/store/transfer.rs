@@ -1,0 +1,85 @@
+//! Artefacts out of a store into an [`Archive`], and back.
+
+use std::collections::BTreeSet;
+
+use rusqlite::params;
+
+use super::{Archive, ArchiveError, Archived, NewArtefact, Store, StoreError, Writer, garbage};
+use crate::key::{ContentHash, Key};
+
+/// What an export or an import moved.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Transfer {
+    /// Number of artefacts.
+    pub artefacts: usize,
+    /// Of these, those that the store did not have.
+    pub new: usize,
+    /// Bytes of their contents.
+    pub bytes: u64,
+}
+
+impl Store {
+    /// The artefacts of these keys with all that they were computed from, or everything when `roots` is `None`.
+    pub fn export(&self, roots: Option<&[Key]>) -> Result<(Vec<u8>, Transfer), StoreError> {
+        let all = self.list()?;
+        let wanted: BTreeSet<Key> = match roots {
+            None => all.iter().map(|a| a.key).collect(),
+            Some(roots) => {
+                let mut open = roots.to_vec();
+                let mut wanted = BTreeSet::new();
+                while let Some(key) = open.pop() {
+                    if let Some(record) = self.record(&key)?
+                        && wanted.insert(key)
+                    {
+                        let inputs = garbage::inputs(&record);
+                        open.extend(all.iter().filter(|a| inputs.contains(&a.content)).map(|a| a.key));
+                    }
+                }
+                wanted
+            }
+        };
+        let mut artefacts = Vec::new();
+        let mut contents = BTreeSet::new();
+        let mut transfer = Transfer::default();
+        for listed in all.into_iter().filter(|a| wanted.contains(&a.key)) {
+            let record = self.record(&listed.key)?.ok_or(StoreError::Missing(listed.content))?;
+            let bytes = self.read(&listed.content)?;
+            transfer.artefacts += 1;
+            transfer.new += 1;
+            if contents.insert(listed.content) {
+                transfer.bytes += bytes.len() as u64;
+            }
+            let (subject, provenance) = (listed.subject, listed.provenance);
+            artefacts.push(Archived { record, subject, provenance, bytes: bytes.into() });
+        }
+        Ok((Archive::new(artefacts).encode(), transfer))
+    }
+
+    /// Adds the artefacts of an archive, all of which is verified first ([`Archive::read`]).
+    pub fn import(&self, writer: &Writer, file: &[u8]) -> Result<Transfer, ArchiveError> {
+        let archive = Archive::read(file)?;
+        let mut transfer = Transfer { artefacts: archive.artefacts().len(), ..Transfer::default() };
+        for Archived { record, subject, provenance, bytes } in archive.artefacts() {
+            let (key, content) = (record.key(), ContentHash::of(bytes));
+            if self.lookup(&key)? == Some(content) && self.read(&content).is_ok() {
+                continue;
+            }
+            let artefact = NewArtefact { record, subject, reason: "imported", provenance, bytes };
+            self.publish(writer, &artefact)?;
+            self.keep_as_latest(&record.kind, subject, key)?;
+            transfer.new += 1;
+            transfer.bytes += bytes.len() as u64;
+        }
+        Ok(transfer)
+    }
+
+    /// Marks an imported artefact as in use, unless another is, so that a collection of garbage leaves it.
+    fn keep_as_latest(&self, kind: &str, subject: &str, key: Key) -> Result<(), StoreError> {
+        let connection = self.connection();
+        connection.execute(
+            "INSERT OR IGNORE INTO latest (kind, subject, key) VALUES (?1, ?2, ?3)",
+            params![kind, subject, key.as_bytes()],
+        )?;
+        Ok(())
+    }
+}
