@@ -287,7 +287,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
+        #![proptest_config(crate::properties::cases(64))]
         #[test]
         fn motions_of_size_one_stay_within_the_tolerance(
             d in prop::array::uniform6(-1.0..1.0f64),
