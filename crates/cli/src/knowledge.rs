@@ -62,8 +62,7 @@ pub(crate) fn plan(project: &Project) -> Outcome<Arc<Graph>> {
 /// Computes what the knowledge base lacks of a project, with progress on standard error. Ctrl-C stops it; what is
 /// finished is kept. The error names everything that could not be computed.
 pub(crate) fn compile(graph: &Arc<Graph>, store: &Arc<Store>) -> Outcome<CompileReport> {
-    let display =
-        Display { state: Mutex::new(State { progress: Progress::new(), running: BTreeMap::new() }) };
+    let display = Display::new();
     let report = robotc_kb::compile(graph, store, &display)?;
     drop(display);
     if interrupted() && !report.complete() {
@@ -109,8 +108,14 @@ pub(crate) fn interrupted() -> bool {
 }
 
 /// Shows events of a compilation: the oldest running artefact on the progress line, finished ones as lines that stay.
-struct Display {
+pub(crate) struct Display {
     state: Mutex<State>,
+}
+
+impl Display {
+    pub(crate) fn new() -> Self {
+        Self { state: Mutex::new(State { progress: Progress::new(), running: BTreeMap::new() }) }
+    }
 }
 
 struct State {

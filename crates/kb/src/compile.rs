@@ -7,13 +7,12 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
-use rayon::prelude::*;
-use robotc_core::Seed;
 use thiserror::Error;
 
+use crate::context::{Context, Shard};
+use crate::depot::{Depot, DepotError, pieces};
 use crate::explain::{Reason, reason};
-use crate::graph::{Dep, Graph, NodeIdx};
-use crate::kind::Kind;
+use crate::graph::{Graph, NodeIdx};
 use crate::record::KeyRecord;
 use crate::resolve::{Knowledge, Known, LoadError};
 use crate::store::{NewArtefact, Store, StoreError, Writer};
@@ -33,12 +32,23 @@ pub enum BuildError {
     /// The artefact failed its own check: a bug of the kind, and nothing was stored.
     #[error("the result failed its check and was not stored: {0}")]
     Check(String),
+    /// Other processes have not done their shards yet.
+    #[error("{missing} of {pieces} pieces are still to be computed by others")]
+    Unfinished {
+        /// Pieces that are not there.
+        missing: usize,
+        /// Pieces in all.
+        pieces: usize,
+    },
     /// An input could not be loaded.
     #[error(transparent)]
     Load(#[from] LoadError),
     /// The store failed.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// The depot of pieces failed.
+    #[error(transparent)]
+    Depot(#[from] DepotError),
 }
 
 /// What happens while compiling.
@@ -278,12 +288,12 @@ impl Run<'_> {
             return Outcome::Blocked(input);
         }
         let (kind, subject) = (node.kind_name(), node.subjects[0].as_str());
-        match self.reuse_or_build(index) {
+        let depot = self.knowledge.store();
+        let built =
+            build_node(self.knowledge, index, &**depot, Shard::WHOLE, self.observer, || Ok(&self.writer));
+        match built {
             Ok(None) => Outcome::Reused,
-            Ok(Some((reason, size))) => {
-                self.observer.event(Event::Stored { kind, subject, size });
-                Outcome::Built(reason)
-            }
+            Ok(Some(reason)) => Outcome::Built(reason),
             Err(BuildError::Cancelled) => Outcome::Cancelled,
             Err(error) => {
                 self.observer.event(Event::Failed { kind, subject, error: &error });
@@ -291,101 +301,43 @@ impl Run<'_> {
             }
         }
     }
-
-    /// `None` when the artefact was there.
-    fn reuse_or_build(&self, index: NodeIdx) -> Result<Option<(Reason, usize)>, BuildError> {
-        let node = self.knowledge.graph().node(index);
-        let store = self.knowledge.store();
-        let (kind, subject) = (node.kind_name(), node.subjects[0].as_str());
-        let record = self.knowledge.key_record(index).expect("all inputs of the node are known");
-        let key = record.key();
-        let reason = match find(store, &record)? {
-            Found::Whole(known) => {
-                self.knowledge.settle(index, known);
-                return Ok(None);
-            }
-            Found::Gone => Reason::Gone,
-            Found::Damaged => Reason::Damaged,
-            Found::Nothing => reason(store, subject, &record)?,
-        };
-        self.observer.event(Event::Started { kind, subject, reason: &reason });
-        let context = Context {
-            knowledge: self.knowledge,
-            seed: Seed::from_bytes(*key.as_bytes()),
-            kind,
-            subject,
-            observer: self.observer,
-        };
-        let bytes = node.kind.build(&*node.work, &context)?;
-        let text = reason.to_string();
-        let artefact =
-            NewArtefact { record: &record, subject, reason: &text, provenance: PROVENANCE, bytes: &bytes };
-        let content = store.publish(&self.writer, &artefact)?;
-        self.knowledge.settle(index, Known { key, content });
-        Ok(Some((reason, bytes.len())))
-    }
 }
 
-/// How often a parallel map reports its progress, at most.
-const REPORTS: u64 = 256;
-
-/// What a build may use besides its inputs and parameters.
-pub struct Context<'a> {
-    knowledge: &'a Knowledge,
-    seed: Seed,
-    kind: &'static str,
-    subject: &'a str,
-    observer: &'a dyn Observer,
-}
-
-impl Context<'_> {
-    /// An artefact that this one is computed from.
-    pub fn load<K: Kind>(&self, dep: &Dep<K>) -> Result<Arc<K::Artefact>, BuildError> {
-        Ok(self.knowledge.load_node(dep)?)
-    }
-
-    /// The root of all randomness: a function of the key.
-    pub fn seed(&self) -> Seed {
-        self.seed
-    }
-
-    /// Reports that `done` of `total` items are computed.
-    pub fn progress(&self, done: u64, total: u64) {
-        self.observer.event(Event::Progress { kind: self.kind, subject: self.subject, done, total });
-    }
-
-    /// Stops a build that nobody waits for any more.
-    pub fn checkpoint(&self) -> Result<(), BuildError> {
-        if self.observer.cancelled() { Err(BuildError::Cancelled) } else { Ok(()) }
-    }
-
-    /// Computes `f(i, items[i])` for all items in parallel, with progress; the results are in order.
-    pub fn map<T: Sync, R: Send>(
-        &self,
-        items: &[T],
-        f: impl Fn(usize, &T) -> R + Sync,
-    ) -> Result<Vec<R>, BuildError> {
-        self.try_map(items, |i, item| Ok(f(i, item)))
-    }
-
-    /// As [`map`](Self::map), for work that can fail. The error is that of the first item that failed in time.
-    pub fn try_map<T: Sync, R: Send>(
-        &self,
-        items: &[T],
-        f: impl Fn(usize, &T) -> Result<R, BuildError> + Sync,
-    ) -> Result<Vec<R>, BuildError> {
-        let done = AtomicUsize::new(0);
-        let total = items.len() as u64;
-        let one = |(i, item): (usize, &T)| {
-            self.checkpoint()?;
-            let result = f(i, item)?;
-            let count = done.fetch_add(1, Ordering::Relaxed) as u64 + 1;
-            // A few hundred reports are enough for a smooth display, and cost nothing.
-            if count * REPORTS / total != (count - 1) * REPORTS / total {
-                self.progress(count, total);
-            }
-            Ok(result)
-        };
-        items.par_iter().enumerate().map(one).collect()
-    }
+/// Computes and stores the artefact of a node whose inputs are known, or the shard of it that falls to this process.
+///
+/// `None` when it was there. The last process to finish its shard puts the pieces together; the others get
+/// [`BuildError::Unfinished`]. Pieces are kept in `depot`. `writer` is asked for when there is something to store.
+pub fn build_node<W: std::ops::Deref<Target = Writer>>(
+    knowledge: &Knowledge,
+    index: NodeIdx,
+    depot: &dyn Depot,
+    shard: Shard,
+    observer: &dyn Observer,
+    writer: impl FnOnce() -> Result<W, StoreError>,
+) -> Result<Option<Reason>, BuildError> {
+    let node = knowledge.graph().node(index);
+    let store = knowledge.store();
+    let (kind, subject) = (node.kind_name(), node.subjects[0].as_str());
+    let record = knowledge.key_record(index).expect("all inputs of the node are known");
+    let key = record.key();
+    let reason = match find(store, &record)? {
+        Found::Whole(known) => {
+            knowledge.settle(index, known);
+            return Ok(None);
+        }
+        Found::Gone => Reason::Gone,
+        Found::Damaged => Reason::Damaged,
+        Found::Nothing => reason(store, subject, &record)?,
+    };
+    observer.event(Event::Started { kind, subject, reason: &reason });
+    let context = Context { knowledge, key, kind, subject, depot, shard, observer };
+    let bytes = node.kind.build(&*node.work, &context)?;
+    let text = reason.to_string();
+    let artefact =
+        NewArtefact { record: &record, subject, reason: &text, provenance: PROVENANCE, bytes: &bytes };
+    let content = store.publish(&*writer()?, &artefact)?;
+    pieces::remove(depot, &key)?;
+    knowledge.settle(index, Known { key, content });
+    observer.event(Event::Stored { kind, subject, size: bytes.len() });
+    Ok(Some(reason))
 }

@@ -19,7 +19,9 @@ use crate::project::{Project, Subject};
 use crate::record::Parts;
 
 #[cfg(feature = "build")]
-pub use crate::compile::{BuildError, Context};
+pub use crate::compile::BuildError;
+#[cfg(feature = "build")]
+pub use crate::context::Context;
 
 /// On which machines equal keys give equal bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,6 +54,8 @@ pub trait Kind: Send + Sync + 'static {
     const ALGORITHM: u32;
     /// Where its bytes repeat.
     const PORTABILITY: Portability;
+    /// Whether its build keeps pieces, so that several processes can share it: see `Context::map_in_pieces`.
+    const IN_PIECES: bool = false;
     /// One or two sentences for users: what it is, and what for.
     const DOC: &'static str;
 
@@ -125,6 +129,8 @@ pub struct KindInfo {
     pub algorithm: u32,
     /// Where its bytes repeat.
     pub portability: Portability,
+    /// Whether several processes can share a build.
+    pub in_pieces: bool,
     /// What it is, for users.
     pub doc: &'static str,
     /// What users can set.
@@ -188,6 +194,7 @@ impl<K: Registrable> AnyKind for Entry<K> {
             format: K::FORMAT,
             algorithm: K::ALGORITHM,
             portability: K::PORTABILITY,
+            in_pieces: K::IN_PIECES,
             doc: K::DOC,
             parameters: K::Parameters::TABLE,
         }

@@ -18,6 +18,9 @@
 pub mod codec;
 #[cfg(feature = "build")]
 pub mod compile;
+#[cfg(feature = "build")]
+pub mod context;
+pub mod depot;
 pub mod explain;
 pub mod graph;
 pub mod key;
@@ -33,7 +36,10 @@ pub mod resolve;
 pub mod store;
 
 #[cfg(feature = "build")]
-pub use compile::{CompileReport, Event, Observer, Outcome, compile};
+pub use compile::{CompileReport, Event, Observer, Outcome, build_node, compile};
+#[cfg(feature = "build")]
+pub use context::Shard;
+pub use depot::Depot;
 pub use graph::{Dep, Graph, NodeIdx, PlanError, Planner};
 pub use key::{ContentHash, Key, RecipeId};
 #[cfg(feature = "build")]

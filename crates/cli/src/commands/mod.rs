@@ -1,5 +1,6 @@
 //! One file per command; one line each in [`Command`] and [`run`].
 
+mod build;
 mod check;
 mod compile;
 mod explain;
@@ -7,6 +8,7 @@ mod graph;
 mod ik;
 mod init;
 mod kb;
+mod plan_build;
 mod run;
 mod schema;
 mod view;
@@ -17,6 +19,7 @@ use crate::output::Outcome;
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
+    Build(build::Build),
     Check(check::Check),
     Compile(compile::Compile),
     Explain(explain::Explain),
@@ -24,6 +27,7 @@ pub(crate) enum Command {
     Ik(ik::Ik),
     Init(init::Init),
     Kb(kb::Kb),
+    PlanBuild(plan_build::PlanBuild),
     Run(run::Run),
     Schema(schema::Schema),
     View(view::View),
@@ -32,6 +36,7 @@ pub(crate) enum Command {
 /// Does what the command line asks for.
 pub(crate) fn run(command: Command) -> Outcome {
     match command {
+        Command::Build(args) => build::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Compile(args) => compile::run(&args),
         Command::Explain(args) => explain::run(&args),
@@ -39,6 +44,7 @@ pub(crate) fn run(command: Command) -> Outcome {
         Command::Ik(args) => ik::run(&args),
         Command::Init(args) => init::run(&args),
         Command::Kb(args) => kb::run(&args),
+        Command::PlanBuild(args) => plan_build::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Schema(args) => schema::run(&args),
         Command::View(args) => view::run(&args),

@@ -7,6 +7,7 @@
 //! blobs/ab/cdef...     larger contents, each named by its hash
 //! cards/ab/cdef...     what the database says of an artefact, named by its key
 //! temporary/           contents being written
+//! pieces/              parts of artefacts that are being computed
 //! writer               locked by the process that builds, collects garbage or imports
 //! ```
 //!

@@ -38,10 +38,15 @@ impl Store {
                 wanted
             }
         };
+        self.pack(&wanted)
+    }
+
+    /// The artefacts of exactly these keys, those that the store has.
+    pub fn pack(&self, keys: &BTreeSet<Key>) -> Result<(Vec<u8>, Transfer), StoreError> {
         let mut artefacts = Vec::new();
         let mut contents = BTreeSet::new();
         let mut transfer = Transfer::default();
-        for listed in all.into_iter().filter(|a| wanted.contains(&a.key)) {
+        for listed in self.list()?.into_iter().filter(|a| keys.contains(&a.key)) {
             let record = self.record(&listed.key)?.ok_or(StoreError::Missing(listed.content))?;
             let bytes = self.read(&listed.content)?;
             transfer.artefacts += 1;

@@ -62,6 +62,7 @@ impl Kind for Reachability {
     const FORMAT: u32 = 1;
     const ALGORITHM: u32 = 1;
     const PORTABILITY: Portability = Portability::Portable;
+    const IN_PIECES: bool = true;
     const DOC: &'static str = "Which poses of its tip an arm reaches, seen from its first axis. Grasps are ranked by it before anything is solved.";
 
     type Subject = OfArm;
@@ -227,7 +228,7 @@ mod build {
             let options = SearchOptions { free_samples: parameters.free_samples as usize };
             let rows: Vec<usize> = (0..grid.radial).collect();
             let search = Search::new(&chain, &solver, grid, &options, collides);
-            let filled = context.map(&rows, |_, &r| search.row(r))?;
+            let filled = context.map_in_pieces("rows", &rows, |_, &r| search.row(r))?;
             Ok(search.assemble(filled))
         }
 

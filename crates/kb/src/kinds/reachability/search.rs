@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use robotc_core::Pose;
 use robotc_core::ik::{IkSolutions, InverseKinematics};
 use robotc_core::model::SerialChain;
+use serde::{Deserialize, Serialize};
 
 use super::map::{Grid, ReachabilityMap, reach};
 
@@ -28,7 +29,7 @@ pub(super) struct Search<'a, C> {
 }
 
 /// The cells at one distance from the axis.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Row {
     counts: Vec<u8>,
     witnesses: Vec<f32>,
