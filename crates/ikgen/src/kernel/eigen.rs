@@ -1,5 +1,7 @@
 //! Eigenvalues of small real Hessenberg matrices, and through them the roots of polynomials in the tangent of a half angle.
 
+use core::ops::Range;
+
 use super::math::sqrt;
 
 /// Largest matrix.
@@ -79,50 +81,65 @@ fn double_step(h: &mut Square, start: usize, size: usize, exceptional: bool) {
     let mut x = h[i][i] * (h[i][i] - trace) + determinant + h[i][j] * h[j][i];
     let mut y = h[j][i] * (h[i][i] + h[j][j] - trace);
     let mut z = h[j][i] * h[start + 2][j];
-    for k in start..size - 1 {
-        let rows = if k + 2 < size { 3 } else { 2 };
-        if rows == 2 {
-            z = 0.0;
+    for k in start..size - 2 {
+        let from = if k > start { k - 1 } else { k };
+        reflect(h, k, [x, y, z], from..size, start..if k + 4 < size { k + 4 } else { size });
+        if k > start {
+            (h[k + 1][k - 1], h[k + 2][k - 1]) = (0.0, 0.0);
         }
-        // The reflection that takes (x, y, z) onto the first axis.
-        let scale = x.abs() + y.abs() + z.abs();
-        if scale > 0.0 {
-            (x, y, z) = (x / scale, y / scale, z / scale);
-            let norm = sqrt(x * x + y * y + z * z);
-            let norm = if x < 0.0 { -norm } else { norm };
-            let v = [1.0, y / (x + norm), z / (x + norm)];
-            let beta = (x + norm) / norm;
-            for c in (if k > start { k - 1 } else { k })..size {
-                let sum =
-                    beta * (h[k][c] + v[1] * h[k + 1][c] + if rows > 2 { v[2] * h[k + 2][c] } else { 0.0 });
-                h[k][c] -= sum;
-                h[k + 1][c] -= sum * v[1];
-                if rows > 2 {
-                    h[k + 2][c] -= sum * v[2];
-                }
-            }
-            let last = if k + 4 < size { k + 4 } else { size };
-            for row in h[start..last].iter_mut() {
-                let sum =
-                    beta * (row[k] + v[1] * row[k + 1] + if rows > 2 { v[2] * row[k + 2] } else { 0.0 });
-                row[k] -= sum;
-                row[k + 1] -= sum * v[1];
-                if rows > 2 {
-                    row[k + 2] -= sum * v[2];
-                }
-            }
-            if k > start {
-                h[k + 1][k - 1] = 0.0;
-                if rows > 2 {
-                    h[k + 2][k - 1] = 0.0;
-                }
-            }
-        }
-        if k + 2 < size {
-            x = h[k + 1][k];
-            y = h[k + 2][k];
-            z = if k + 3 < size { h[k + 3][k] } else { 0.0 };
-        }
+        (x, y) = (h[k + 1][k], h[k + 2][k]);
+        z = if k + 3 < size { h[k + 3][k] } else { 0.0 };
+    }
+    reflect_last(h, size - 2, [x, y], size - 3..size, start..size);
+    h[size - 1][size - 3] = 0.0;
+}
+
+/// Reflects rows and columns `k`, `k + 1` and `k + 2` so that `vector` comes to lie along the first of them.
+fn reflect(h: &mut Square, k: usize, vector: [f64; 3], columns: Range<usize>, rows: Range<usize>) {
+    let [x, y, z] = vector;
+    let norm = sqrt(x * x + y * y + z * z);
+    if !(norm > 0.0) {
+        return;
+    }
+    let norm = if x < 0.0 { -norm } else { norm };
+    let (v, w, beta) = (y / (x + norm), z / (x + norm), (x + norm) / norm);
+    let (beta_v, beta_w) = (beta * v, beta * w);
+    let [a, b, c] = &mut h[k..k + 3] else { return };
+    for ((a, b), c) in a[columns.clone()].iter_mut().zip(&mut b[columns.clone()]).zip(&mut c[columns]) {
+        let sum = *a + v * *b + w * *c;
+        *a -= beta * sum;
+        *b -= beta_v * sum;
+        *c -= beta_w * sum;
+    }
+    for row in &mut h[rows] {
+        let [a, b, c] = &mut row[k..k + 3] else { return };
+        let sum = *a + v * *b + w * *c;
+        *a -= beta * sum;
+        *b -= beta_v * sum;
+        *c -= beta_w * sum;
+    }
+}
+
+/// The same for the last two.
+fn reflect_last(h: &mut Square, k: usize, vector: [f64; 2], columns: Range<usize>, rows: Range<usize>) {
+    let [x, y] = vector;
+    let norm = sqrt(x * x + y * y);
+    if !(norm > 0.0) {
+        return;
+    }
+    let norm = if x < 0.0 { -norm } else { norm };
+    let (v, beta) = (y / (x + norm), (x + norm) / norm);
+    let beta_v = beta * v;
+    let [a, b] = &mut h[k..k + 2] else { return };
+    for (a, b) in a[columns.clone()].iter_mut().zip(&mut b[columns]) {
+        let sum = *a + v * *b;
+        *a -= beta * sum;
+        *b -= beta_v * sum;
+    }
+    for row in &mut h[rows] {
+        let sum = row[k] + v * row[k + 1];
+        row[k] -= beta * sum;
+        row[k + 1] -= beta_v * sum;
     }
 }
 

@@ -10,7 +10,9 @@
 pub mod candidate;
 pub mod chain;
 pub mod eigen;
+pub mod elimination;
 pub mod math;
+pub mod null;
 pub mod roots;
 pub mod six;
 pub mod sqrt;
@@ -30,10 +32,12 @@ pub(crate) const SOURCES: [(&str, &str); 4] = [
 
 /// Source text of the further files of programs that solve six joints in general.
 #[cfg(feature = "generate")]
-pub(crate) const SIX_SOURCES: [(&str, &str); 4] = [
+pub(crate) const SIX_SOURCES: [(&str, &str); 6] = [
     ("vector", include_str!("vector.rs")),
     ("eigen", include_str!("eigen.rs")),
     ("waves", include_str!("waves.rs")),
+    ("elimination", include_str!("elimination.rs")),
+    ("null", include_str!("null.rs")),
     ("six", include_str!("six.rs")),
 ];
 

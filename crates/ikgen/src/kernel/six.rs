@@ -8,17 +8,19 @@
 //!    and `q5` alone.
 //! 2. For a given `q3` those are six forms in `(1, c5, s5)`, quadratic in the tangent of half of `q4`. They and their multiples by
 //!    that tangent are a square system of twelve, whose determinant is a trigonometric polynomial of `q3` of degree eight.
-//! 3. Seventeen samples give it, the eigenvalues of a companion matrix its roots; Newton's method on the system itself
-//!    (Manocha and Canny, 1994, solve it as one large eigenproblem instead) restores the digits that the polynomial lost.
-//! 4. The null vector of the system gives `q4` and `q5`, what remains of the loop `q2`, `q1` and `q6`.
+//! 3. Seventeen samples give it, the eigenvalues of a companion matrix its roots; the secant method on the determinant itself
+//!    restores the digits that the polynomial lost. (Manocha and Canny, 1994, solve one larger eigenproblem instead.)
+//! 4. Null vectors of the system give `q4` and `q5`, what remains of the loop `q2`, `q1` and `q6`.
 //!
 //! Any of the six joints can be first in the loop, and the loop can be run backwards: an *order*. In some the determinant
 //! vanishes for all angles, because of how the axes of an arm lie; the compiler finds out which are good.
 
 use super::eigen::MAX_SIZE;
+use super::elimination::{eliminate, samples};
 use super::math::{cos_sin, sqrt};
+use super::null::{Pair, refined, several, single};
 use super::vector::{Line, Motion, Vector, back, cross, dot, minus, plus, times, unit};
-use super::waves::{self, MAX_SAMPLES};
+use super::waves::{MAX_DEGREE, Root, Waves};
 
 /// A turn of each joint, as `[cos, sin]`.
 pub type Turns = [[f64; 2]; 6];
@@ -65,6 +67,8 @@ pub struct Order {
     pub code: usize,
     /// Degree of the determinant, eight at most.
     pub degree: usize,
+    /// Whether the determinant is a square: solutions come in pairs that share the sampled angle.
+    pub squared: bool,
 }
 
 /// Roots whose imaginary part is smaller may be real: pairs that fall together lose half of their digits.
@@ -104,313 +108,6 @@ fn arrange(lines: &[Line; 6], goal: &Motion, code: usize) -> Arranged {
         }
     }
     Arranged { lines: placed, goal, joints, swapped }
-}
-
-/// Six equations, each with a coefficient for each product of one of `1, c, s` of the sampled angle, one of `t^2, t, 1` of the
-/// one that is eliminated by its half tangent `t`, and one of `1, c, s` of the third.
-type Six = [[f64; 27]; 6];
-
-/// The square system of twelve at one value of the sampled angle.
-type System = [[f64; 12]; 12];
-
-/// Cosine and sine at which equations are sampled, one turn for each of `1, c, s`.
-const PLACES: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]];
-
-/// From values at [`PLACES`] to the coefficients of `1, c, s`, for the index of this stride.
-fn fit(values: &mut [f64], stride: usize) {
-    for base in 0..values.len() {
-        if (base / stride).is_multiple_of(3) {
-            let [a, b, c] = [values[base], values[base + stride], values[base + 2 * stride]];
-            let still = 0.5 * (a + c);
-            values[base] = still;
-            values[base + stride] = a - still;
-            values[base + 2 * stride] = b - still;
-        }
-    }
-}
-
-/// The fourteen functions of a line on which the elimination rests, with `p` a point on it and `l` its direction.
-fn functions(line: &Line) -> [f64; 14] {
-    let (p, l) = (line.point, line.direction);
-    let (pp, pl, m) = (dot(p, p), dot(p, l), cross(p, l));
-    let w = minus(times(l, pp), times(p, 2.0 * pl));
-    [p[0], p[1], p[2], l[0], l[1], l[2], pp, pl, m[0], m[1], m[2], w[0], w[1], w[2]]
-}
-
-/// Step 1: the equations without `q1` and `q2`.
-fn eliminate(loop_: &Arranged) -> Six {
-    let lines = &loop_.lines;
-    let origin = lines[2].point;
-    let mut size = 0.0f64;
-    for line in lines {
-        let d = minus(line.point, origin);
-        size = size.max(dot(d, d));
-    }
-    let scale = 1.0 / sqrt(size);
-    let scaled = |line: Line| Line { point: times(minus(line.point, origin), scale), ..line };
-
-    let mut left = [[0.0; 27]; 14];
-    for k in 0..3 {
-        let after5 = lines[4].moved(&lines[5], PLACES[k]);
-        for j in 0..3 {
-            let after4 = lines[3].moved(&after5, PLACES[j]);
-            for i in 0..3 {
-                let values = functions(&scaled(lines[2].moved(&after4, PLACES[i])));
-                let column = if loop_.swapped { 9 * i + 3 * k + j } else { 9 * i + 3 * j + k };
-                for (row, value) in left.iter_mut().zip(values) {
-                    row[column] = value;
-                }
-            }
-        }
-    }
-    let mut right = [[0.0; 9]; 14];
-    let last = loop_.goal.moved(&lines[5]);
-    for i in 0..3 {
-        let before1 = lines[0].moved(&last, back(PLACES[i]));
-        for j in 0..3 {
-            let values = functions(&scaled(lines[1].moved(&before1, back(PLACES[j]))));
-            for (row, value) in right.iter_mut().zip(values) {
-                row[3 * i + j] = value;
-            }
-        }
-    }
-    for (left, right) in left.iter_mut().zip(&mut right) {
-        fit(right, 1);
-        fit(right, 3);
-        fit(left, 1);
-        fit(left, 3);
-        fit(left, 9);
-        left[0] -= right[0];
-    }
-    reflect(&mut left, &mut right);
-    let mut six = [[0.0; 27]; 6];
-    six.copy_from_slice(&left[8..]);
-    for row in &mut six {
-        for i in 0..3 {
-            for k in 0..3 {
-                // (1 + t^2) (one + cos c + sin s)
-                let [one, cos, sin] = [0, 3, 6].map(|j| row[9 * i + j + k]);
-                (row[9 * i + k], row[9 * i + 3 + k], row[9 * i + 6 + k]) = (one - cos, 2.0 * sin, one + cos);
-            }
-        }
-    }
-    six
-}
-
-/// Takes all columns of `right` but the first to its first eight rows, by reflections of both sides.
-fn reflect(left: &mut [[f64; 27]; 14], right: &mut [[f64; 9]; 14]) {
-    let mut done = [false; 9];
-    done[0] = true;
-    for step in 0..8 {
-        let (mut pivot, mut most) = (0, -1.0);
-        for c in 1..9 {
-            let mut square = 0.0;
-            for row in &right[step..] {
-                square += row[c] * row[c];
-            }
-            if !done[c] && square > most {
-                (pivot, most) = (c, square);
-            }
-        }
-        done[pivot] = true;
-        if most < 1e-24 {
-            return;
-        }
-        let mut mirror = [0.0; 14];
-        for r in step..14 {
-            mirror[r] = right[r][pivot];
-        }
-        let head = mirror[step];
-        mirror[step] += if head < 0.0 { -sqrt(most) } else { sqrt(most) };
-        let factor = 1.0 / (most + head.abs() * sqrt(most));
-        let mut sums = ([0.0; 27], [0.0; 9]);
-        for r in step..14 {
-            for (sum, x) in sums.0.iter_mut().zip(&left[r]) {
-                *sum += mirror[r] * x;
-            }
-            for (sum, x) in sums.1.iter_mut().zip(&right[r]) {
-                *sum += mirror[r] * x;
-            }
-        }
-        for r in step..14 {
-            let by = factor * mirror[r];
-            for (x, sum) in left[r].iter_mut().zip(&sums.0) {
-                *x -= by * sum;
-            }
-            for (x, sum) in right[r].iter_mut().zip(&sums.1) {
-                *x -= by * sum;
-            }
-        }
-    }
-}
-
-/// Step 2: the system at `one + cos c + sin s` of the coefficients.
-fn system(six: &Six, [one, cos, sin]: [f64; 3]) -> System {
-    let mut m = [[0.0; 12]; 12];
-    for r in 0..6 {
-        for n in 0..9 {
-            let x = one * six[r][n] + cos * six[r][9 + n] + sin * six[r][18 + n];
-            m[r][n] = x;
-            m[6 + r][n + 3] = x;
-        }
-    }
-    m
-}
-
-/// A system as a product of triangles.
-struct Factored {
-    m: System,
-    order: [usize; 12],
-    determinant: f64,
-}
-
-fn factor(mut m: System) -> Factored {
-    let mut order = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11];
-    let mut determinant = 1.0;
-    for k in 0..12 {
-        let mut pivot = k;
-        for r in k + 1..12 {
-            if m[r][k].abs() > m[pivot][k].abs() {
-                pivot = r;
-            }
-        }
-        if pivot != k {
-            m.swap(pivot, k);
-            order.swap(pivot, k);
-            determinant = -determinant;
-        }
-        determinant *= m[k][k];
-        if m[k][k].abs() < 1e-150 {
-            m[k][k] = 1e-150;
-        }
-        let (top, below) = m.split_at_mut(k + 1);
-        let top = &top[k];
-        for row in below {
-            let factor = row[k] / top[k];
-            row[k] = factor;
-            if factor != 0.0 {
-                for c in k + 1..12 {
-                    row[c] -= factor * top[c];
-                }
-            }
-        }
-    }
-    Factored { m, order, determinant }
-}
-
-impl Factored {
-    /// The right null vector, nearly, at length one.
-    fn right(&self, start: &[f64; 12]) -> [f64; 12] {
-        let mut x = [0.0; 12];
-        for i in 0..12 {
-            x[i] = start[self.order[i]];
-            for j in 0..i {
-                x[i] -= self.m[i][j] * x[j];
-            }
-        }
-        for i in (0..12).rev() {
-            for j in i + 1..12 {
-                x[i] -= self.m[i][j] * x[j];
-            }
-            x[i] /= self.m[i][i];
-        }
-        unit12(x)
-    }
-
-    /// The left null vector, nearly, at length one.
-    fn left(&self, start: &[f64; 12]) -> [f64; 12] {
-        let mut y = *start;
-        for i in 0..12 {
-            for j in 0..i {
-                y[i] -= self.m[j][i] * y[j];
-            }
-            y[i] /= self.m[i][i];
-        }
-        let mut x = [0.0; 12];
-        for i in (0..12).rev() {
-            for j in i + 1..12 {
-                y[i] -= self.m[j][i] * y[j];
-            }
-            x[self.order[i]] = y[i];
-        }
-        unit12(x)
-    }
-}
-
-fn unit12(x: [f64; 12]) -> [f64; 12] {
-    let mut largest = 0.0f64;
-    for v in x {
-        largest = largest.max(v.abs());
-    }
-    let mut square = 0.0;
-    for v in x {
-        square += v / largest * (v / largest);
-    }
-    let n = largest * sqrt(square);
-    x.map(|v| v / n)
-}
-
-/// Samples of the determinant, as many as its degree asks for.
-fn sample(six: &Six, degree: usize) -> [f64; MAX_SAMPLES] {
-    let mut samples = [0.0; MAX_SAMPLES];
-    let n = 2 * degree + 1;
-    for (i, x) in samples.iter_mut().enumerate().take(n) {
-        let [c, s] = cos_sin(core::f64::consts::TAU * i as f64 / n as f64);
-        *x = factor(system(six, [1.0, c, s])).determinant;
-    }
-    samples
-}
-
-/// Steps 3 and 4 from a root: the sampled angle, refined, and the two that the null vector holds.
-fn refine(six: &Six, angle: f64) -> Option<[[f64; 2]; 3]> {
-    let (mut q, mut right, mut left) = (angle, [0.3; 12], [0.3; 12]);
-    for step in 0..6 {
-        let [c, s] = cos_sin(q);
-        let m = system(six, [1.0, c, s]);
-        let factored = factor(m);
-        for _ in 0..2 - step.min(1) {
-            right = factored.right(&right);
-            left = factored.left(&left);
-        }
-        let slope = system(six, [0.0, -s, c]);
-        let (mut value, mut rise) = (0.0, 0.0);
-        for i in 0..12 {
-            value += left[i] * inner(&m[i], &right);
-            rise += left[i] * inner(&slope[i], &right);
-        }
-        let change = -value / rise;
-        if !(change.abs() < 0.1) {
-            break;
-        }
-        q += change;
-        if change.abs() < 1e-7 {
-            break;
-        }
-    }
-    // (t^3, t^2, t, 1) times (1, c, s): the larger end gives both.
-    let part = |i: usize| [right[3 * i], right[3 * i + 1], right[3 * i + 2]];
-    let (first, last) = (dot(part(0), part(0)), dot(part(3), part(3)));
-    let (top, bottom, other) = if first > last {
-        (first, dot(part(0), part(1)), part(0))
-    } else {
-        (dot(part(2), part(3)), last, part(3))
-    };
-    // The half angle along (bottom, top), doubled.
-    let half = unit(bottom, top, 0.0)?;
-    let sign = if other[0] < 0.0 { -1.0 } else { 1.0 };
-    Some([
-        cos_sin(q),
-        [half[0] * half[0] - half[1] * half[1], 2.0 * half[0] * half[1]],
-        unit(sign * other[1], sign * other[2], 0.0)?,
-    ])
-}
-
-fn inner(a: &[f64; 12], b: &[f64; 12]) -> f64 {
-    let mut sum = 0.0;
-    for (x, y) in a.iter().zip(b) {
-        sum += x * y;
-    }
-    sum
 }
 
 /// The first two turns and the last, from the middle three.
@@ -472,54 +169,96 @@ fn align(axis: Vector, from: [Vector; 2], to: [Vector; 2]) -> Option<[f64; 2]> {
 
 /// Candidates for `e1 ... e6 = goal`: the joints' lines at zero turn. The orders are tried one after the other until in
 /// one of them all roots lie apart.
+///
+/// Slack is for poses at which that gave nothing. Solutions are then a continuum, or many fall together. At a goal nearby
+/// they are isolated, and near enough for a polish.
 pub fn six(lines: &[Line; 6], goal: &Motion, orders: &[Order], slack: f64) -> Candidates {
     let mut found = Candidates::NONE;
+    let goal = if slack > 0.0 { nudged(goal, 0.1 * slack) } else { *goal };
     for order in orders {
-        if solve(lines, goal, *order, slack, &mut found) {
+        if solve(lines, &goal, *order, slack, &mut found) && slack == 0.0 {
             break;
         }
     }
     found
 }
 
+/// A motion near another, in no special direction.
+fn nudged(goal: &Motion, size: f64) -> Motion {
+    let turn = cos_sin(size);
+    let about = Line { direction: [0.48, -0.6, 0.64], point: [0.0; 3] };
+    let column = |i: usize| about.turned([goal.rows[0][i], goal.rows[1][i], goal.rows[2][i]], turn);
+    let [a, b, c] = [column(0), column(1), column(2)];
+    let rows = [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]];
+    Motion { rows, place: plus(goal.place, times([0.64, 0.48, -0.6], size)) }
+}
+
 /// Adds the candidates of one order; says whether they are all that there are.
 fn solve(lines: &[Line; 6], goal: &Motion, order: Order, slack: f64, found: &mut Candidates) -> bool {
     let loop_ = arrange(lines, goal, order.code);
-    let six = eliminate(&loop_);
-    let samples = sample(&six, order.degree);
-    let mut roots = [[0.0; 2]; MAX_SIZE];
-    let count = waves::roots(&samples, order.degree, &mut roots);
-    let mut all = count == 2 * order.degree;
+    let six = eliminate(&loop_.lines, &loop_.goal, loop_.swapped);
+    let waves = Waves::new(&samples(&six, order.degree), order.degree);
+    let mut roots = [Root { angle: 0.0, imaginary: 0.0 }; MAX_SIZE];
+    let count = waves.roots(order.squared, &mut roots);
+    let multiplicity = if order.squared { 2 } else { 1 };
+    let mut all = count * multiplicity == 2 * order.degree;
+    let mut done = [false; MAX_SIZE];
     let before = found.len;
-    for (i, [angle, imaginary]) in roots[..count].iter().enumerate() {
-        if imaginary.abs() > NEARLY_REAL + slack {
+    let mut add = |turn, [tangent, other]: Pair| {
+        let middle = if loop_.swapped { [turn, other, tangent] } else { [turn, tangent, other] };
+        if let Some([q1, q2, q6]) = close(&loop_, middle) {
+            let mut turns = [[1.0, 0.0]; 6];
+            for (joint, turn) in loop_.joints.into_iter().zip([q1, q2, middle[0], middle[1], middle[2], q6]) {
+                turns[joint] = turn;
+            }
+            found.push(turns);
+        }
+    };
+    for i in 0..count {
+        let Root { angle, imaginary } = roots[i];
+        if done[i] || imaginary.abs() > NEARLY_REAL + 5.0 * sqrt(slack) {
             continue;
         }
-        // Roots that nearly fall together are less exact than Newton's method needs, or are solutions with the same angle.
+        // Roots that nearly fall together: their mean is more exact than each of them.
+        let (mut together, mut shift) = (0, 0.0);
+        let mut near = [false; MAX_SIZE];
         for (j, other) in roots[..count].iter().enumerate() {
-            let apart = 0.5 * (angle - other[0]);
-            all &= i == j || cos_sin(apart)[1].abs() + (imaginary - other[1]).abs() > APART;
+            let [c, s] = cos_sin(other.angle - angle);
+            near[j] = c > 0.0 && s.abs() + (other.imaginary - imaginary).abs() < APART;
+            if near[j] {
+                together += multiplicity;
+                shift += s;
+            }
         }
-        let Some(middle) = refine(&six, *angle) else { continue };
-        let middle = if loop_.swapped { [middle[0], middle[2], middle[1]] } else { middle };
-        let Some([q1, q2, q6]) = close(&loop_, middle) else { continue };
-        let mut turns = [[1.0, 0.0]; 6];
-        for (joint, turn) in loop_.joints.into_iter().zip([q1, q2, middle[0], middle[1], middle[2], q6]) {
-            turns[joint] = turn;
+        if together > 1 {
+            let turn = cos_sin(angle + shift * multiplicity as f64 / together as f64);
+            let dimension = several(&six, turn, |pair| add(turn, pair));
+            if dimension == together {
+                for (done, near) in done.iter_mut().zip(near) {
+                    *done |= near;
+                }
+                continue;
+            }
+            all = false;
         }
-        found.push(turns);
+        let turn = cos_sin(refined(&six, &waves, angle));
+        if let Some(pair) = single(&six, turn) {
+            add(turn, pair);
+        }
     }
     all && found.len > before
 }
 
-/// Samples of the determinant of an order, from which the compiler learns its degree.
-pub fn samples(lines: &[Line; 6], goal: &Motion, code: usize) -> [f64; MAX_SAMPLES] {
-    sample(&eliminate(&arrange(lines, goal, code)), waves::MAX_DEGREE)
+/// The determinant of an order, from which the compiler learns its degree.
+pub fn waves_of(lines: &[Line; 6], goal: &Motion, code: usize) -> Waves {
+    let loop_ = arrange(lines, goal, code);
+    let six = eliminate(&loop_.lines, &loop_.goal, loop_.swapped);
+    Waves::new(&samples(&six, MAX_DEGREE), MAX_DEGREE)
 }
 
 /// Numbers that [`six_of`] takes: six lines as direction and point, the rows of the goal's rotation, its place, and
-/// [`MOST_ORDERS`] orders as code and degree (zero for none).
-pub const NUMBERS: usize = 48 + 2 * MOST_ORDERS;
+/// [`MOST_ORDERS`] orders as code, degree (zero for none), and whether the determinant is a square.
+pub const NUMBERS: usize = 48 + 3 * MOST_ORDERS;
 
 /// Most orders of a program.
 pub const MOST_ORDERS: usize = 3;
@@ -532,12 +271,12 @@ pub fn six_of(x: &[f64; NUMBERS], slack: f64) -> Candidates {
         *line = Line { direction: vector(6 * i), point: vector(6 * i + 3) };
     }
     let goal = Motion { rows: [vector(36), vector(39), vector(42)], place: vector(45) };
-    let mut orders = [Order { code: 0, degree: 0 }; MOST_ORDERS];
+    let mut orders = [Order { code: 0, degree: 0, squared: false }; MOST_ORDERS];
     let mut count = 0;
-    for pair in x[48..].chunks(2) {
-        let degree = pair[1] as usize;
-        if (1..=waves::MAX_DEGREE).contains(&degree) {
-            orders[count] = Order { code: pair[0] as usize % ORDERS, degree };
+    for number in x[48..].chunks(3) {
+        let degree = number[1] as usize;
+        if (1..=MAX_DEGREE).contains(&degree) {
+            orders[count] = Order { code: number[0] as usize % ORDERS, degree, squared: number[2] != 0.0 };
             count += 1;
         }
     }

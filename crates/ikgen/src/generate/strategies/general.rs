@@ -11,9 +11,9 @@ use super::reach::Line as Symbolic;
 use crate::generate::builder::{Builder, Move, Scalar, Vector};
 use crate::generate::problem::Problem;
 use crate::kernel::math::cos_sin;
-use crate::kernel::six::{MOST_ORDERS, ORDERS, Order, samples, six};
+use crate::kernel::six::{MOST_ORDERS, ORDERS, Order, six, waves_of};
 use crate::kernel::vector::{Line, Motion};
-use crate::kernel::waves::{MAX_DEGREE, MAX_SAMPLES};
+use crate::kernel::waves::{MAX_DEGREE, Waves};
 
 /// Poses on which orders are compared.
 const POSES: usize = 24;
@@ -58,14 +58,16 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
     let place = goal.apply(b, undo.iter().fold(origin, |p, (step, axis)| step.apply(b, axis, p)));
     args.extend(place.0);
     for k in 0..MOST_ORDERS {
-        let order = orders.get(k).copied().unwrap_or(Order { code: 0, degree: 0 });
-        args.extend([order.code, order.degree].map(|x| b.constant(x as f64)));
+        let order = orders.get(k).copied().unwrap_or(Order { code: 0, degree: 0, squared: false });
+        let numbers = [order.code, order.degree, usize::from(order.squared)];
+        args.extend(numbers.map(|x| b.constant(x as f64)));
     }
     let names: Vec<String> = (0..6).map(|i| problem.name(i)).collect();
     let turns = b.six(&names, &args);
     let moves: Vec<Move<'_>> = turns.into_iter().map(Move::Turn).collect();
     problem.emit(b, &moves);
-    Ok(format!("eliminated to degree {}", 2 * best.degree))
+    let degree = if best.squared { best.degree } else { 2 * best.degree };
+    Ok(format!("eliminated to degree {degree}"))
 }
 
 /// The orders that find random joint vectors again, best first: those that miss fewest, then those of the lowest degree, then
@@ -73,25 +75,33 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
 fn orders(problem: &Problem) -> Vec<Order> {
     let mut rng = Seed::new(0).split("ikgen orders").rng();
     let trials: Vec<Trial> = (0..POSES).map(|_| trial(problem, &mut rng)).collect();
-    let mut ranked: Vec<(usize, usize, f64, usize)> = Vec::new();
+    let mut ranked: Vec<(usize, usize, f64, Order)> = Vec::new();
     for code in 0..ORDERS {
-        let degree = trials.iter().map(|t| degree(&samples(&t.lines, &t.goal, code))).max();
+        let degree = trials.iter().map(|t| degree(&waves_of(&t.lines, &t.goal, code))).max();
         let degree = degree.unwrap_or(MAX_DEGREE);
         if degree == 0 {
             continue;
         }
-        let errors: Vec<f64> = trials.iter().map(|t| error(t, Order { code, degree })).collect();
-        let missed = errors.iter().filter(|e| **e >= 1e-6 || e.is_nan()).count();
-        let exactness: f64 = errors.iter().map(|e| libm::log10(e.clamp(1e-15, 1.0))).sum();
-        if missed * 2 < POSES {
-            ranked.push((missed, degree, exactness, code));
+        for squared in [true, false] {
+            let order = Order { code, degree, squared };
+            if squared && degree % 2 != 0 {
+                continue;
+            }
+            let errors: Vec<f64> = trials.iter().map(|t| error(t, order)).collect();
+            let missed = errors.iter().filter(|e| **e >= 1e-6 || e.is_nan()).count();
+            let exactness: f64 = errors.iter().map(|e| libm::log10(e.clamp(1e-15, 1.0))).sum();
+            if missed * 2 < POSES {
+                let degree = if squared { degree / 2 } else { degree };
+                ranked.push((missed, degree, exactness, order));
+            }
         }
     }
-    ranked.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)).then(a.3.cmp(&b.3)));
+    ranked
+        .sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)).then(a.3.code.cmp(&b.3.code)));
     let mut chosen: Vec<Order> = Vec::new();
-    for (_, degree, _, code) in ranked {
-        if chosen.len() < MOST_ORDERS && chosen.iter().all(|o| o.code / 2 != code / 2) {
-            chosen.push(Order { code, degree });
+    for (.., order) in ranked {
+        if chosen.len() < MOST_ORDERS && chosen.iter().all(|o| o.code / 2 != order.code / 2) {
+            chosen.push(order);
         }
     }
     chosen
@@ -143,21 +153,11 @@ fn error(trial: &Trial, order: Order) -> f64 {
 }
 
 /// Highest wave that is more than rounding; zero where all of them are.
-fn degree(samples: &[f64; MAX_SAMPLES]) -> usize {
-    let waves: Vec<f64> = (0..=MAX_DEGREE)
-        .map(|k| {
-            let (mut c, mut s) = (0.0, 0.0);
-            for (i, x) in samples.iter().enumerate() {
-                let [cos, sin] = cos_sin(std::f64::consts::TAU * (i * k) as f64 / MAX_SAMPLES as f64);
-                c += x * cos;
-                s += x * sin;
-            }
-            libm::hypot(c, s)
-        })
-        .collect();
-    let largest = waves.iter().fold(0.0, |a: f64, b| a.max(*b));
+fn degree(waves: &Waves) -> usize {
+    let sizes: Vec<f64> = (0..=MAX_DEGREE).map(|k| waves.size(k)).collect();
+    let largest = sizes.iter().fold(0.0, |a: f64, b| a.max(*b));
     if largest.is_nan() || largest < 1e-25 {
         return 0;
     }
-    (0..=MAX_DEGREE).rev().find(|k| waves[*k] > ROUNDING * largest).unwrap_or(0)
+    (0..=MAX_DEGREE).rev().find(|k| sizes[*k] > ROUNDING * largest).unwrap_or(0)
 }
