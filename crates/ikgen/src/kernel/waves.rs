@@ -123,7 +123,7 @@ impl Waves {
         let mut conjugate = [[0.0; 2]; MAX_SIZE + 1];
         conjugate[0] = [1.0, 0.0];
         for m in 0..=2 * n {
-            let k = if m < n { n - m } else { m - n };
+            let k = n.abs_diff(m);
             let [c, s] = cos_sin(k as f64 * self.start);
             let [x, y] = self.d[k];
             let turned = [x * c - y * s, x * s + y * c];
