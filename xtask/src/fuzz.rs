@@ -58,8 +58,7 @@ const TABLE: &str = "docs/campaigns/fuzz.md";
 /// Fuzzes the targets that are named, or all; stops at the first that finds something.
 pub(crate) fn run(args: &[String]) -> anyhow::Result<()> {
     let (targets, seconds) = parse(args)?;
-    let built = cargo_fuzz("build").status()?;
-    ensure!(built.success(), "the targets do not build; it takes cargo-fuzz and a nightly compiler");
+    build()?;
     for target in targets {
         let campaign = Campaign::new(target)?;
         let row = campaign.run(seconds)?;
@@ -86,13 +85,22 @@ fn parse(args: &[String]) -> anyhow::Result<(Vec<&'static Target>, u64)> {
     Ok((if targets.is_empty() { TARGETS.iter().collect() } else { targets }, seconds))
 }
 
-/// `cargo fuzz` with the nightly compiler; everything it builds goes below `target/fuzz`.
-fn cargo_fuzz(what: &str) -> Command {
+/// Builds all targets once, with the nightly compiler, below `target/fuzz`.
+fn build() -> anyhow::Result<()> {
     let mut command = Command::new("cargo");
     // What this task was started with must not choose the compiler.
     command.env_remove("RUSTUP_TOOLCHAIN").current_dir(root());
-    command.args(["+nightly", "fuzz", what, "--target-dir", "target/fuzz"]);
-    command
+    let built = command.args(["+nightly", "fuzz", "build", "--target-dir", "target/fuzz"]).status()?;
+    ensure!(built.success(), "the targets do not build; it takes cargo-fuzz and a nightly compiler");
+    Ok(())
+}
+
+/// The folder of what [`build`] built: below the name of this machine's target.
+fn programs() -> anyhow::Result<PathBuf> {
+    let version = Command::new("rustc").arg("-vV").output()?;
+    let version = String::from_utf8_lossy(&version.stdout);
+    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).context("rustc has a host")?;
+    Ok(root().join("target/fuzz").join(host).join("release"))
 }
 
 /// One target being fuzzed.
@@ -182,8 +190,8 @@ impl Campaign {
     /// Runs libFuzzer on folders that it may grow, or on files.
     fn fuzzer(&self, inputs: &[PathBuf], options: &[&str]) -> anyhow::Result<Progress> {
         let log = self.broken.with_file_name("log");
-        let mut command = cargo_fuzz("run");
-        command.arg(self.target.0).args(inputs).arg("--").args(LIMITS).args(options).arg("-seed=1");
+        let mut command = Command::new(programs()?.join(self.target.0));
+        command.args(inputs).args(LIMITS).args(options).arg("-seed=1");
         command.arg(format!("-artifact_prefix={}/", self.broken.display()));
         // How it ends is no failure of this task: what was found tells.
         command.stdout(Stdio::null()).stderr(std::fs::File::create(&log)?).status()?;

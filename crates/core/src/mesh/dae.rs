@@ -15,8 +15,11 @@ const MOST_NESTED: usize = 64;
 /// Most nodes of one scene: references to references multiply.
 const MOST_NODES: usize = 100_000;
 
-/// Most characters of number lists, counted once for each instance.
-const MOST_READ: usize = 1 << 30;
+/// Characters that may be read beyond eight times those of the file: every instance of a geometry or node reads it again.
+const MOST_READ_AGAIN: usize = 1 << 25;
+
+/// What a reference or an element costs to follow, in characters.
+const STEP: usize = 64;
 
 pub(super) fn read(bytes: &[u8]) -> Result<(RawMesh, Option<UpAxis>), MeshError> {
     let (text, _) = xml::decode(bytes);
@@ -44,7 +47,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<(RawMesh, Option<UpAxis>), MeshError>
         "Z_UP" => Some(UpAxis::Z),
         _ => None,
     });
-    let mut scene = Scene { ids: index(&root), mesh: RawMesh::default(), nodes: 0, read: 0 };
+    let left = text.len().saturating_mul(8).saturating_add(MOST_READ_AGAIN);
+    let mut scene = Scene { ids: index(&root), mesh: RawMesh::default(), nodes: 0, left };
     let metres = Matrix4::new_scaling(unit);
     match visual_scene(&root, &scene.ids) {
         Some(visual_scene) => scene.node(visual_scene, &metres, 0)?,
@@ -90,8 +94,8 @@ struct Scene<'a> {
     ids: Ids<'a>,
     mesh: RawMesh,
     nodes: usize,
-    /// Characters of number lists read so far, each instance anew.
-    read: usize,
+    /// Characters that may still be read, each instance anew.
+    left: usize,
 }
 
 impl<'a> Scene<'a> {
@@ -108,6 +112,7 @@ impl<'a> Scene<'a> {
         }
         let mut metres_from_node = *metres_from_parent;
         for element in node.elements() {
+            self.reads(own_characters(element))?;
             metres_from_node *= transform(element)?;
         }
         for element in node.elements() {
@@ -136,12 +141,16 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
+    /// Counts characters that are read.
+    fn reads(&mut self, characters: usize) -> Result<(), MeshError> {
+        let left = self.left.checked_sub(characters + STEP);
+        self.left = left.ok_or_else(|| malformed("its instances are too many to be read"))?;
+        Ok(())
+    }
+
     fn geometry(&mut self, geometry: &'a Element, metres_from_node: &Matrix4<f64>) -> Result<(), MeshError> {
         let Some(mesh) = geometry.child("mesh") else { return Ok(()) };
-        self.read += characters(mesh);
-        if self.read > MOST_READ {
-            return Err(MeshError::TooLarge(MOST_FACES));
-        }
+        self.reads(characters(mesh))?;
         let mirrors = metres_from_node.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
         // Primitives of one mesh share their vertices: each source is placed once.
         let mut placed: HashMap<*const Element, i64> = HashMap::new();
@@ -150,6 +159,8 @@ impl<'a> Scene<'a> {
             let first = match placed.get(&std::ptr::from_ref(source)) {
                 Some(&first) => first,
                 None => {
+                    // It may be that of another mesh.
+                    self.reads(characters(source))?;
                     let first = self.mesh.vertices.len() as i64;
                     for p in points(source)? {
                         self.mesh.vertices.push(metres_from_node.transform_point(&p).coords.into());
@@ -188,6 +199,15 @@ impl<'a> Scene<'a> {
         let position = vertices.named("input").find(|i| i.value("semantic") == Some("POSITION"))?;
         Some((offset.min(64), stride, target(&self.ids, position.value("source"))?))
     }
+}
+
+/// Characters of the text in an element, its children left out.
+fn own_characters(element: &Element) -> usize {
+    let of = |node: &Node| match node {
+        Node::Text(text, _) => text.len(),
+        Node::Element(_) => 0,
+    };
+    element.children.iter().map(of).sum()
 }
 
 /// Characters of all number lists in an element.
@@ -342,6 +362,18 @@ mod tests {
         assert!((corner(0, 1) - nalgebra::Point3::new(1.0, 1.0, 0.0)).norm() < 1e-15);
         assert!((corner(1, 1) - nalgebra::Point3::new(0.5, 0.0, 2.0)).norm() < 1e-15);
         assert_eq!(loaded.mesh.faces.len(), 2);
+    }
+
+    /// A few nodes of two references each: the geometry at their end would be read a million times.
+    #[test]
+    fn references_that_multiply_are_refused() {
+        let twice = |i: usize| format!("<instance_node url=\"#n{i}\"/>").repeat(2);
+        let nodes: String = (1..14).map(|i| format!("<node id=\"n{i}\">{}</node>", twice(i - 1))).collect();
+        let nodes = format!("<node id=\"n0\"><instance_geometry url=\"#g\"/></node>{nodes}");
+        let list = format!("<p>{}</p></triangles>", "0 0 1 0 2 0 ".repeat(500));
+        let primitive = TRIANGLE.replace("<p>0 0 1 0 2 0</p></triangles>", &list);
+        let refused = read(scene(&nodes, &primitive).as_bytes(), "dae");
+        assert!(refused.unwrap_err().to_string().contains("too many to be read"));
     }
 
     #[test]

@@ -8,6 +8,8 @@ use super::value::Value;
 pub(super) trait Names {
     /// The property of this name; `None` if there is none.
     fn property(&mut self, name: &str) -> Result<Option<Value>, String>;
+    /// Counts what is made of values; fails when it is too much.
+    fn spend(&mut self, size: usize) -> Result<(), String>;
     /// The argument of this name, for `xacro.arg`.
     fn argument(&mut self, name: &str) -> Result<Value, String>;
     /// The document of a YAML file, for `xacro.load_yaml`.
@@ -23,14 +25,16 @@ pub(super) fn evaluate(expression: &Expression, names: &mut dyn Names) -> Result
             None => functions::constant(name).ok_or_else(|| format!("`{name}` is not defined"))?,
         },
         Expression::List(items) => {
-            Value::List(items.iter().map(|item| evaluate(item, names)).collect::<Result<_, _>>()?)
+            let items = items.iter().map(|item| evaluate(item, names)).collect::<Result<_, _>>()?;
+            sized(Value::List(items), names)?
         }
         Expression::Dict(entries) => {
             let entries = entries.iter().map(|(key, value)| {
                 let key = evaluate(key, names)?.to_string();
                 Ok::<_, String>((key, evaluate(value, names)?))
             });
-            Value::Dict(entries.collect::<Result<_, _>>()?)
+            let entries = entries.collect::<Result<_, _>>()?;
+            sized(Value::Dict(entries), names)?
         }
         Expression::Negate(value) => match evaluate(value, names)? {
             Value::Int(i) => i.checked_neg().map_or(Value::Float(-(i as f64)), Value::Int),
@@ -38,7 +42,8 @@ pub(super) fn evaluate(expression: &Expression, names: &mut dyn Names) -> Result
         },
         Expression::Not(value) => Value::Bool(!evaluate(value, names)?.is_true()),
         Expression::Binary(operator, left, right) => {
-            binary(*operator, &evaluate(left, names)?, &evaluate(right, names)?)?
+            let (left, right) = (evaluate(left, names)?, evaluate(right, names)?);
+            sized(binary(*operator, &left, &right)?, names)?
         }
         Expression::Compare(first, rest) => {
             let mut left = evaluate(first, names)?;
@@ -70,6 +75,12 @@ pub(super) fn evaluate(expression: &Expression, names: &mut dyn Names) -> Result
             indexed(&owner, &index)?
         }
     })
+}
+
+/// The value, once it is counted.
+fn sized(value: Value, names: &mut dyn Names) -> Result<Value, String> {
+    names.spend(value.size())?;
+    Ok(value)
 }
 
 /// Modules whose members are reached by a dot.

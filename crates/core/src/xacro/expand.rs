@@ -17,6 +17,10 @@ const MOST_NESTED: usize = 150;
 /// Most elements of an expanded description.
 const MOST_ELEMENTS: usize = 300_000;
 
+/// Most bytes of text and values that an expansion makes, those of in-between results counted: each of a few properties can
+/// double what the one before it holds, each of a few blocks insert the one before it twice.
+const MOST_MADE: usize = 1 << 25;
+
 /// Errors after which the expansion stops: the rest is likely to follow from them.
 const MOST_ERRORS: usize = 40;
 
@@ -32,7 +36,10 @@ pub(super) struct Expander<'a> {
     /// The scope of the file, then one for each macro call that is open.
     pub(super) scopes: Vec<Scope>,
     depth: usize,
+    /// Elements made.
     made: usize,
+    /// Bytes of text and values made.
+    spent: usize,
     stopped: bool,
     /// Whether the file writes xacro's own elements without their prefix, as was allowed long ago.
     unprefixed: bool,
@@ -56,6 +63,7 @@ impl<'a> Expander<'a> {
             scopes: vec![Scope::default()],
             depth: 0,
             made: 0,
+            spent: 0,
             stopped: false,
             unprefixed: false,
             found: Diagnostics::new(),
@@ -101,6 +109,24 @@ impl<'a> Expander<'a> {
         self.stopped |= self.found.count(Severity::Error) >= MOST_ERRORS;
     }
 
+    /// Counts bytes that are made; fails when there are too many of them.
+    pub(super) fn spend(&mut self, size: usize) -> Result<(), String> {
+        self.spent = self.spent.saturating_add(size);
+        if self.spent <= MOST_MADE { Ok(()) } else { Err("the description grows without end".to_owned()) }
+    }
+
+    /// As [`spend`](Self::spend), for what an element holds: the expansion stops when there is too much of it.
+    fn spend_on(&mut self, element: &Element, elements: usize, characters: usize) -> bool {
+        self.made = self.made.saturating_add(elements);
+        let fits = self.spend(characters).is_ok() && self.made <= MOST_ELEMENTS;
+        if !fits && !self.stopped {
+            self.stopped = true;
+            let message = format!("the expansion of `<{}>` does not end", element.name);
+            self.error("R0254", element.span, message);
+        }
+        fits
+    }
+
     /// Runs `step` one level deeper, or fails when that is too deep.
     pub(super) fn deeper<T>(
         &mut self,
@@ -132,11 +158,10 @@ impl<'a> Expander<'a> {
     }
 
     fn element(&mut self, element: &Element, out: &mut Vec<Node>) {
-        self.made += 1;
-        if self.stopped {
+        if self.stopped || !self.spend_on(element, 1, own_size(element)) {
             return;
         }
-        if self.depth >= MOST_NESTED || self.made > MOST_ELEMENTS {
+        if self.depth >= MOST_NESTED {
             self.stopped = true;
             let message = format!("the expansion of `<{}>` does not end", element.name);
             self.error("R0254", element.span, message);
@@ -356,8 +381,11 @@ impl<'a> Expander<'a> {
         let Some(name) = self.required_text(element, "name") else { return };
         match self.scopes.iter().rev().find_map(|s| s.blocks.get(&name)) {
             Some(block) => {
-                self.made += block.len();
-                out.extend(block.iter().cloned());
+                let block = block.clone();
+                let (elements, characters) = size(&block);
+                if self.spend_on(element, elements, characters) {
+                    out.extend(block.iter().cloned());
+                }
             }
             None => self.error("R0252", element.span, format!("there is no block `{name}`")),
         }
@@ -388,6 +416,30 @@ impl<'a> Expander<'a> {
         };
         out.push(Node::Element(carrier));
     }
+}
+
+/// Characters of an element and of the text in it, its children left out.
+fn own_size(element: &Element) -> usize {
+    let attributes = element.attributes.iter().map(|a| a.name.len() + a.value.len());
+    let text = element.children.iter().map(|node| match node {
+        Node::Text(text, _) => text.len(),
+        Node::Element(_) => 0,
+    });
+    element.name.len() + attributes.chain(text).sum::<usize>()
+}
+
+/// Elements and characters of nodes with all that is in them.
+fn size(nodes: &[Node]) -> (usize, usize) {
+    let (mut elements, mut characters) = (0, 0);
+    let mut open: Vec<&Node> = nodes.iter().collect();
+    while let Some(node) = open.pop() {
+        if let Node::Element(element) = node {
+            elements += 1;
+            characters += own_size(element);
+            open.extend(&element.children);
+        }
+    }
+    (elements, characters)
 }
 
 /// Name of the elements that carry computed attributes.

@@ -223,3 +223,39 @@ fn endless_expansions_are_stopped() {
     let (_, found) = expanded(&[("main.xacro", &file)]);
     assert!(found.contains("grows without end"), "{found}");
 }
+
+/// Few elements, each twice the one before: the expansion must stop before they fill the memory.
+#[test]
+fn doubling_in_expressions_and_blocks_is_stopped() {
+    let chain = |step: &dyn Fn(usize) -> String| (1..60).map(step).collect::<String>();
+    let property = |start: &str, value: &str| {
+        let steps = chain(&|i| {
+            let value = value.replace('P', &format!("p{}", i - 1));
+            format!("<xacro:property name=\"p{i}\" value=\"${{{value}}}\"/>")
+        });
+        format!("<xacro:property name=\"p0\" value=\"{start}\"/>{steps}<a v=\"${{len(p59)}}\"/>")
+    };
+    let insert = |i: usize| format!("<xacro:insert_block name=\"b{i}\"/>").repeat(2);
+    let blocks =
+        chain(&|i| format!("<xacro:property name=\"b{i}\"><c>{}</c></xacro:property>", insert(i - 1)));
+    let attribute = "x".repeat(20_000);
+    let calls = chain(&|i| {
+        let calls = format!("<xacro:m{}/>", i - 1).repeat(2);
+        format!("<xacro:macro name=\"m{i}\" params=\"\">{calls}</xacro:macro>")
+    });
+    let endless = [
+        property("xxxxxxxx", "P + P"),
+        property("${[1]}", "P + P"),
+        property("${[1]}", "[P, P]"),
+        property("${{'k': 1}}", "{'a': P, 'b': P}"),
+        format!("<xacro:property name=\"b0\"><d/></xacro:property>{blocks}{}", insert(59)),
+        format!(
+            "<xacro:macro name=\"m0\" params=\"\"><a v=\"{attribute}\"/></xacro:macro>{calls}<xacro:m59/>"
+        ),
+    ];
+    for text in endless {
+        let file = format!("<robot xmlns:xacro=\"x\">{text}</robot>");
+        let (_, found) = expanded(&[("main.xacro", &file)]);
+        assert!(found.contains("without end") || found.contains("does not end"), "{}: {found}", &text[..200]);
+    }
+}

@@ -71,6 +71,7 @@ impl Expander<'_> {
             rest = &after[length + 1..];
         }
         out.push_str(rest);
+        self.spend(out.len())?;
         Ok(Value::Text(out))
     }
 
@@ -192,7 +193,13 @@ struct View<'e, 'a> {
 
 impl Names for View<'_, '_> {
     fn property(&mut self, name: &str) -> Result<Option<Value>, String> {
-        self.expander.property_in(name, self.top)
+        let value = self.expander.property_in(name, self.top)?;
+        self.spend(value.as_ref().map_or(0, Value::size))?;
+        Ok(value)
+    }
+
+    fn spend(&mut self, size: usize) -> Result<(), String> {
+        self.expander.spend(size)
     }
 
     fn argument(&mut self, name: &str) -> Result<Value, String> {

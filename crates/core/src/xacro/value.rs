@@ -55,6 +55,17 @@ impl Value {
         }
     }
 
+    /// About how many bytes it takes.
+    pub(super) fn size(&self) -> usize {
+        const OWN: usize = size_of::<Value>();
+        match self {
+            Self::None | Self::Bool(_) | Self::Int(_) | Self::Float(_) => OWN,
+            Self::Text(text) => OWN + text.len(),
+            Self::List(items) => OWN + items.iter().map(Self::size).sum::<usize>(),
+            Self::Dict(entries) => OWN + entries.iter().map(|(k, v)| OWN + k.len() + v.size()).sum::<usize>(),
+        }
+    }
+
     /// What kind of value this is, for messages.
     pub(super) fn kind(&self) -> &'static str {
         match self {
