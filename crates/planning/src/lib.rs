@@ -3,6 +3,7 @@
 //! Planners work on a [`Space`] and an [`EdgeChecker`] and never see a robot.
 
 pub mod arm;
+pub mod bispace;
 pub mod budget;
 pub mod caging;
 pub mod cartesian;
@@ -16,6 +17,7 @@ pub mod manipulation;
 pub mod mechanism;
 #[cfg(test)]
 mod properties;
+pub mod placement;
 pub mod rrt;
 pub mod scene;
 pub mod smooth;

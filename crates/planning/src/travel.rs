@@ -33,7 +33,16 @@ impl TravelBounds {
         row
     }
 
+    /// The farthest that any point of a body fixed to `link`, within `radius` of its origin, is from the root's origin.
+    pub fn reach(&self, kinematics: &Kinematics, link: LinkIdx, radius: f64) -> f64 {
+        self.row_and_reach(kinematics, link, radius).1
+    }
+
     fn row(&self, kinematics: &Kinematics, link: LinkIdx, radius: f64) -> Vec<f64> {
+        self.row_and_reach(kinematics, link, radius).0
+    }
+
+    fn row_and_reach(&self, kinematics: &Kinematics, link: LinkIdx, radius: f64) -> (Vec<f64>, f64) {
         let model = kinematics.model();
         let mut row = vec![0.0; self.dofs.len()];
         // Distance from the origin of the link reached so far to any point of the body.
@@ -69,7 +78,7 @@ impl TravelBounds {
             reach += (joint.parent_from_joint() * moved).translation.vector.norm();
             at = joint.parent;
         }
-        row
+        (row, reach)
     }
 
     /// The part of [`travel`](Self::travel) that a body with this row travels at most, whatever the motion.

@@ -55,10 +55,7 @@ pub fn open_with_sets<T: ArticulatedTask>(
     loop {
         let stage_seed = seed.at(stages.len() as u64);
         let mut order: Vec<usize> = (0..tasks.len()).collect();
-        let mut rng = stage_seed.rng();
-        for i in (1..order.len()).rev() {
-            order.swap(i, rng.below(i + 1));
-        }
+        stage_seed.rng().shuffle(&mut order);
         let mut sets = Vec::new();
         let mut advanced = false;
         for set in order {

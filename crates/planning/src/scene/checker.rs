@@ -79,7 +79,7 @@ impl<'a> RobotChecker<'a> {
 }
 
 /// What `dofs` move, with bounds on its travel. Pairs that they do not move against each other are left out.
-fn movers(scene: &Scene, dofs: &[DofIdx], rules: &Rules) -> (TravelBounds, Movers) {
+pub(super) fn movers(scene: &Scene, dofs: &[DofIdx], rules: &Rules) -> (TravelBounds, Movers) {
     let mut bounds = TravelBounds::new(dofs);
     let rows: TypedVec<LinkIdx, Vec<f64>> = scene
         .links

@@ -6,6 +6,7 @@
 //! point: a link that moves at a third of that pace has three times the room.
 
 mod checker;
+mod mobile;
 mod shape;
 
 use std::sync::Arc;
@@ -16,6 +17,7 @@ use robotc_core::world::World;
 use robotc_core::{BodyIdx, Kinematics, LinkIdx, LinkPoses, Pose, TypedVec};
 
 pub use checker::RobotChecker;
+pub use mobile::MobileChecker;
 use shape::Shape;
 
 use crate::edge::Obstruction;

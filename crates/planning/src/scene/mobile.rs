@@ -1,0 +1,138 @@
+//! The edge checker of a robot that drives on a plane and moves its joints.
+
+use nalgebra::{Translation3, UnitQuaternion, Vector3};
+use robotc_core::{Configuration, DofIdx, LinkIdx, LinkPoses, Pose};
+
+use super::checker::movers;
+use super::{Movers, Rules, Scene};
+use crate::edge::{EdgeChecker, Obstruction};
+use crate::space::{Axis, Space};
+use crate::travel::TravelBounds;
+
+/// Motions of a base and some degrees of freedom at once. States are x, y and heading of the base in the world, and then
+/// the joints; the base keeps the height that the robot has in the scene, and
+/// stands upright.
+pub struct MobileChecker<'a> {
+    scene: &'a Scene,
+    space: Space,
+    dofs: &'a [DofIdx],
+    movers: Movers,
+    bounds: TravelBounds,
+    /// Farthest that any point of the robot or of what it holds is from the base's origin, metres.
+    radius: f64,
+    resolution: f64,
+    rules: Rules,
+    q: Configuration,
+    poses: LinkPoses,
+    states: u64,
+}
+
+/// Clearance beyond this is not looked for, metres.
+const ROOM: f64 = 0.2;
+
+impl<'a> MobileChecker<'a> {
+    /// The base within `low` to `high` (x and y), and `dofs` with the axes of `joints`, the others as in `q`; bodies travel
+    /// no more than `resolution` metres between two checked states.
+    ///
+    /// The metric counts metres of the base and radians of its heading as they are; weights of joints are those of `joints`.
+    pub fn new(
+        scene: &'a Scene,
+        (low, high): ([f64; 2], [f64; 2]),
+        joints: &Space,
+        dofs: &'a [DofIdx],
+        q: &Configuration,
+        rules: Rules,
+        resolution: f64,
+    ) -> Self {
+        let (bounds, of_joints) = movers(scene, dofs, &rules);
+        let mut axes = vec![Axis::bounded(low[0], high[0]), Axis::bounded(low[1], high[1]), Axis::wrapping()];
+        axes.extend_from_slice(joints.axes());
+        let shaped = scene.links.enumerate().filter(|(_, shape)| !shape.is_empty());
+        let mut radius: f64 = 0.0;
+        let mut links: Vec<(LinkIdx, f64)> = Vec::new();
+        for (link, shape) in shaped {
+            radius = radius.max(bounds.reach(&scene.kinematics, link, shape.radius_about_origin()));
+            // The base moves all of them, at full pace.
+            links.push((link, 1.0));
+        }
+        if let Some(grip) = &rules.held {
+            let offset = grip.link_from_body.translation.vector.norm();
+            let held = scene.bodies[grip.body].shape.radius_about_origin() + offset;
+            radius = radius.max(bounds.reach(&scene.kinematics, grip.link, held));
+        }
+        Self {
+            scene,
+            space: Space::new(axes),
+            dofs,
+            movers: Movers { links, held: 1.0, ..of_joints },
+            bounds,
+            radius,
+            resolution,
+            rules,
+            q: q.clone(),
+            poses: LinkPoses::default(),
+            states: 0,
+        }
+    }
+
+    /// Number of states looked at so far.
+    pub fn states(&self) -> u64 {
+        self.states
+    }
+
+    /// Whether a base is free with the joints as they are in the configuration given, links for which `only` is false left
+    /// out: those that move with the base, but not with the arm, are checked first when a base is placed.
+    pub fn base_is_free(&mut self, base: &[f64; 3], only: &dyn Fn(LinkIdx) -> bool) -> Result<(), Obstruction> {
+        self.states += 1;
+        self.scene.kinematics.link_poses(&self.q, &mut self.poses);
+        let links = self.movers.links.iter().filter(|(link, _)| only(*link)).copied().collect();
+        let movers = Movers { links, held: 1.0, ..Movers::default() };
+        let rules = Rules { held: None, ..self.rules.clone() };
+        let robot = self.world_from_robot(base);
+        self.scene.against_bodies(&robot, &self.poses, &movers, &rules, 0.0)?;
+        Ok(())
+    }
+
+    fn world_from_robot(&self, base: &[f64]) -> Pose {
+        let height = self.scene.world_from_robot.translation.z;
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), base[2]);
+        Pose::from_parts(Translation3::new(base[0], base[1], height), turn)
+    }
+}
+
+impl EdgeChecker for MobileChecker<'_> {
+    fn space(&self) -> &Space {
+        &self.space
+    }
+
+    fn state(&mut self, q: &[f64]) -> Result<f64, Obstruction> {
+        self.states += 1;
+        if !self.space.contains(q) {
+            return Err(Obstruction::Bounds);
+        }
+        self.q.set(self.dofs, &q[3..]);
+        self.scene.kinematics.link_poses(&self.q, &mut self.poses);
+        let robot = self.world_from_robot(q);
+        let room = self.scene.against_bodies(&robot, &self.poses, &self.movers, &self.rules, ROOM)?;
+        Ok(self.scene.against_self(&self.poses, &self.movers, &self.rules, room)?)
+    }
+
+    fn travel(&self, difference: &[f64]) -> f64 {
+        let drive = difference[0].hypot(difference[1]) + self.radius * difference[2].abs();
+        drive + self.bounds.travel(&difference[3..])
+    }
+
+    fn resolution(&self) -> f64 {
+        self.resolution
+    }
+
+    fn describe(&self, obstruction: Obstruction) -> String {
+        match obstruction {
+            Obstruction::Bounds => "a joint limit or the edge of the floor is exceeded".into(),
+            Obstruction::Constraint => "the path constraint is violated".into(),
+            Obstruction::Contact(n) => {
+                self.scene.describe(obstruction).unwrap_or_else(|| format!("contact {n}"))
+            }
+        }
+    }
+}
