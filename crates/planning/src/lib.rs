@@ -15,9 +15,9 @@ pub mod grasp;
 pub mod jitter;
 pub mod manipulation;
 pub mod mechanism;
+pub mod placement;
 #[cfg(test)]
 mod properties;
-pub mod placement;
 pub mod rrt;
 pub mod scene;
 pub mod smooth;

@@ -60,12 +60,16 @@ impl Default for InverseSamplesOptions {
 
 /// Inverse reachability from random configurations of the arms, free of self-collision or not: a base that stands upright
 /// can be turned and shifted on the floor, so a configuration serves every pose of the tool of the same height and tilt.
+///
+/// Random joint values crowd where the arm is singular; samples are weighted by the manipulability of the arm (Yoshikawa,
+/// 1985), the volume of tool motions that unit joint motions make, so that all poses that the arm reaches count the same.
 #[derive(Debug, Clone)]
 pub struct InverseSamples {
     options: InverseSamplesOptions,
     arms: Vec<Vec<Sample>>,
-    /// Samples that serve the pose asked for last: drawing asks for the same poses again and again.
-    last: Vec<(usize, Pose, Vec<usize>)>,
+    /// Samples that serve poses asked for before, each with the sum of weights up to it: drawing asks for the same poses
+    /// again and again.
+    last: Vec<(usize, Pose, Vec<(usize, f64)>)>,
 }
 
 #[derive(Debug, Clone)]
@@ -74,26 +78,30 @@ struct Sample {
     /// The vertical in the tool frame.
     up_in_tool: UnitVector3<f64>,
     base_from_tool: Pose,
+    weight: f64,
 }
 
 impl InverseSamples {
     /// Samples of these arms, each given as it stands when the base is at the origin and looks along x.
     pub fn of_arms(arms: &[&ArmModel], options: &InverseSamplesOptions, rng: &mut Rng) -> Self {
         let sample = |arm: &ArmModel, rng: &mut Rng| {
-            let base_from_tool = arm.world_from_tool(&arm.space().sample(rng));
+            let q = arm.space().sample(rng);
+            let base_from_tool = arm.world_from_tool(&q);
+            let jacobian = arm.tool_jacobian(&q);
             let up = base_from_tool.rotation.inverse() * Vector3::z();
             Sample {
                 height: base_from_tool.translation.z,
                 up_in_tool: UnitVector3::new_normalize(up),
                 base_from_tool,
+                weight: (&jacobian * jacobian.transpose()).determinant().max(0.0).sqrt(),
             }
         };
         let arms = arms.iter().map(|arm| (0..options.count).map(|_| sample(arm, rng)).collect()).collect();
         Self { options: *options, arms, last: Vec::new() }
     }
 
-    /// Samples that serve a pose.
-    fn matches(&mut self, arm: usize, world_from_tool: &Pose) -> &[usize] {
+    /// Samples that serve a pose, each with the sum of weights up to it.
+    fn matches(&mut self, arm: usize, world_from_tool: &Pose) -> &[(usize, f64)] {
         let known = self.last.iter().position(|(a, pose, _)| *a == arm && pose == world_from_tool);
         let entry = known.unwrap_or_else(|| {
             let up = UnitVector3::new_normalize(world_from_tool.rotation.inverse() * Vector3::z());
@@ -102,7 +110,14 @@ impl InverseSamples {
                 (sample.height - world_from_tool.translation.z).abs() <= self.options.height
                     && sample.up_in_tool.dot(&up) >= least
             };
-            let found = self.arms[arm].iter().enumerate().filter(|(_, s)| serves(s)).map(|(i, _)| i).collect();
+            let mut sum = 0.0;
+            let mut found = Vec::new();
+            for (i, sample) in self.arms[arm].iter().enumerate() {
+                if serves(sample) && sample.weight > 0.0 {
+                    sum += sample.weight;
+                    found.push((i, sum));
+                }
+            }
             self.last.push((arm, *world_from_tool, found));
             self.last.len() - 1
         });
@@ -112,15 +127,15 @@ impl InverseSamples {
 
 impl BaseDistribution for InverseSamples {
     fn mass(&mut self, arm: usize, world_from_tool: &Pose) -> f64 {
-        self.matches(arm, world_from_tool).len() as f64 / self.options.count.max(1) as f64
+        let count = self.options.count.max(1) as f64;
+        self.matches(arm, world_from_tool).last().map_or(0.0, |(_, sum)| sum / count)
     }
 
     fn draw(&mut self, arm: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<[f64; 3]> {
         let matches = self.matches(arm, world_from_tool);
-        if matches.is_empty() {
-            return None;
-        }
-        let sample = matches[rng.below(matches.len())];
+        let (_, sum) = *matches.last()?;
+        let at = sum * rng.unit();
+        let (sample, _) = matches[matches.partition_point(|(_, up_to)| *up_to <= at)];
         let world_from_base = world_from_tool * self.arms[arm][sample].base_from_tool.inverse();
         let ahead = world_from_base.rotation * Vector3::x();
         let at = world_from_base.translation.vector;

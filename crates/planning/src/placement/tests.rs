@@ -47,9 +47,9 @@ impl PlacementProblem for Cell<'_> {
 }
 
 fn scene() -> Scene {
-    // A table with something in the middle, and a pillar.
+    // A counter with something in the middle, and a pillar.
     let boxes = [
-        ([1.0, 1.6, 0.05], [2.0, 0.0, 0.35]),
+        ([0.8, 1.6, 0.375], [2.0, 0.0, 0.1875]),
         ([0.05, 0.05, 0.1], [2.0, 0.2, 0.43]),
         ([0.4, 0.4, 2.0], [1.1, 0.6, 1.0]),
     ];
@@ -66,7 +66,7 @@ fn with_cell<R>(scene: &Scene, arm: &ArmModel, f: impl FnOnce(&mut Cell<'_>) -> 
     f(&mut Cell { arm, checker, base_links, covered: vec![], asked: 0 })
 }
 
-/// Beside the thing on the table, from above and from four sides.
+/// Beside the thing on the counter, from above and from four sides.
 fn grasps() -> Vec<Pose> {
     let at = Translation3::new(2.0, 0.05, 0.55);
     let mut all: Vec<Pose> = (0..4)
@@ -131,16 +131,19 @@ fn placements_reach_their_grasps_and_are_free() {
 
 #[test]
 fn inverse_reachability_beats_random_places() {
-    let (mut informed, mut uniform) = (0, 0);
+    let (mut places, mut misses) = ([0, 0], [0, 0]);
     for seed in 0..5 {
-        let (found, rejections) = sample(&mut inverse_samples(7), &[], 10, seed);
-        assert_eq!(found.len(), 10);
-        informed += rejections.places;
-        let (found, rejections) = sample(&mut UniformBases { radius: 1.2 }, &[], 10, seed);
-        assert_eq!(found.len(), 10, "{rejections}");
-        uniform += rejections.places;
+        let mut uniform = UniformBases { radius: 1.2 };
+        let distributions: [&mut dyn BaseDistribution; 2] = [&mut inverse_samples(7), &mut uniform];
+        for (k, distribution) in distributions.into_iter().enumerate() {
+            let (found, rejections) = sample(distribution, &[], 10, seed);
+            assert_eq!(found.len(), 10, "{rejections}");
+            places[k] += rejections.places;
+            misses[k] += rejections.out_of_reach;
+        }
     }
-    assert!(2 * uniform > 5 * informed, "{informed} against {uniform}");
+    assert!(4 * places[0] < 3 * places[1], "{places:?}");
+    assert!(10 * misses[0] < misses[1], "{misses:?}");
 }
 
 #[test]
@@ -194,7 +197,10 @@ fn an_arm_folds_itself_above_its_footprint() {
         .iter()
         .map(|name| (robot.model.link_named(name).unwrap(), vec![Point3::origin()]))
         // What the gripper holds sticks out of it.
-        .chain([(robot.model.link_named("hand").unwrap(), vec![Point3::new(0.3, 0.1, 0.0), Point3::new(0.3, -0.1, 0.0)])])
+        .chain([(
+            robot.model.link_named("hand").unwrap(),
+            vec![Point3::new(0.3, 0.1, 0.0), Point3::new(0.3, -0.1, 0.0)],
+        )])
         .collect();
     let bodies = PrismBodies { kinematics: &kinematics, q: q.clone(), dofs: arm.dofs(), corners };
     let prism = Prism {
@@ -202,7 +208,7 @@ fn an_arm_folds_itself_above_its_footprint() {
         heights: (0.1, 1.6),
     };
     let excess = |q: &[f64]| bodies.excess(&prism, q);
-    assert!(excess(&REST) > 0.2, "at rest the arm sticks out");
+    assert!(excess(&REST) > 0.1, "at rest the arm sticks out");
     let mut goals =
         NavigationPosture::new(&mut checker, &excess, &REST, PostureOptions::default(), Seed::new(1));
     let mut found = Vec::new();
@@ -219,5 +225,9 @@ fn an_arm_folds_itself_above_its_footprint() {
     // A search draws them as it goes.
     let mut goals =
         NavigationPosture::new(&mut checker, &excess, &found[0], PostureOptions::default(), Seed::new(1));
-    assert_eq!(goals.draw(&Budget::unlimited()), Ok(GoalDraw::Goal(found[0].clone())), "a good preset comes first");
+    assert_eq!(
+        goals.draw(&Budget::unlimited()),
+        Ok(GoalDraw::Goal(found[0].clone())),
+        "a good preset comes first"
+    );
 }

@@ -82,7 +82,11 @@ impl<'a> MobileChecker<'a> {
 
     /// Whether a base is free with the joints as they are in the configuration given, links for which `only` is false left
     /// out: those that move with the base, but not with the arm, are checked first when a base is placed.
-    pub fn base_is_free(&mut self, base: &[f64; 3], only: &dyn Fn(LinkIdx) -> bool) -> Result<(), Obstruction> {
+    pub fn base_is_free(
+        &mut self,
+        base: &[f64; 3],
+        only: &dyn Fn(LinkIdx) -> bool,
+    ) -> Result<(), Obstruction> {
         self.states += 1;
         self.scene.kinematics.link_poses(&self.q, &mut self.poses);
         let links = self.movers.links.iter().filter(|(link, _)| only(*link)).copied().collect();
