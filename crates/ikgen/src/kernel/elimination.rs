@@ -245,12 +245,53 @@ fn clear<const C: usize>(rows: &mut [[f64; C]; 6], columns: usize) -> (f64, f64)
     (product, sign)
 }
 
-/// Samples of the determinant at equal steps, as many as its degree asks for.
-pub fn samples(six: &Six, degree: usize) -> [f64; MAX_SAMPLES] {
-    let mut samples = [0.0; MAX_SAMPLES];
-    let n = 2 * degree + 1;
-    for (i, x) in samples.iter_mut().enumerate().take(n) {
-        *x = determinant(six, cos_sin(core::f64::consts::TAU * i as f64 / n as f64));
+/// How the sampled angle is looked at: `tan((q3 - centre) / 2) = width tan(u / 2)`.
+///
+/// A determinant is a trigonometric polynomial of `u` as well, when it is multiplied by a power of what the half angle is stretched
+/// by. Where it is all but zero over a part of the circle, a small width shows what is there.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Cosine and sine of the angle at `u = 0`.
+    pub centre: [f64; 2],
+    /// Angle for each unit of `u` there.
+    pub width: f64,
+}
+
+impl View {
+    /// The angle as it is.
+    pub const WHOLE: View = View { centre: [1.0, 0.0], width: 1.0 };
+
+    /// The angle at `u`, as cosine and sine, and the square of the stretch.
+    pub fn turn(&self, u: f64) -> ([f64; 2], f64) {
+        let [c, s] = cos_sin(0.5 * u);
+        let s = self.width * s;
+        let square = c * c + s * s;
+        (sum(self.centre, [(c * c - s * s) / square, 2.0 * c * s / square]), square)
     }
-    samples
+
+    /// The determinant at `u`, as a trigonometric polynomial of this degree.
+    pub fn value(&self, six: &Six, degree: usize, u: f64) -> f64 {
+        let (turn, square) = self.turn(u);
+        let mut value = determinant(six, turn);
+        for _ in 0..degree {
+            value *= square;
+        }
+        value
+    }
+
+    /// Samples of that at equal steps of `u`, as many as its degree asks for.
+    pub fn samples(&self, six: &Six, degree: usize) -> [f64; MAX_SAMPLES] {
+        let mut samples = [0.0; MAX_SAMPLES];
+        let n = 2 * degree + 1;
+        for (i, x) in samples.iter_mut().enumerate().take(n) {
+            *x = self.value(six, degree, core::f64::consts::TAU * i as f64 / n as f64);
+        }
+        samples
+    }
+
+    /// The view of this width round `u`.
+    pub fn zoomed(&self, u: f64, width: f64) -> View {
+        let (centre, square) = self.turn(u);
+        View { centre, width: width * self.width / square }
+    }
 }

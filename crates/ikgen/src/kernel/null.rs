@@ -1,8 +1,7 @@
 //! From a root of the eliminated equation to the two angles beside it: null vectors of the reduced system.
 
 use super::eigen::{MAX_SIZE, Square, hessenberg_eigenvalues};
-use super::elimination::{Six, at, determinant, reduced, turn_of_half};
-use super::math::cos_sin;
+use super::elimination::{Six, View, at, reduced, turn_of_half};
 use super::roots::circle;
 use super::vector::{Vector, cross, dot, unit};
 use super::waves::Waves;
@@ -16,15 +15,15 @@ pub type Pair = [[f64; 2]; 2];
 /// A root of the determinant near that of its waves, which are exact to rounding of the largest sample.
 ///
 /// Newton's method with the determinant itself and the slope of the waves, taken only where rounding matters.
-pub fn refined(six: &Six, waves: &Waves, start: f64) -> f64 {
+pub fn refined(six: &Six, waves: &Waves, view: &View, start: f64) -> f64 {
     let mut q = start;
     for _ in 0..8 {
-        let slope = waves.slope(q);
+        let [_, slope] = waves.at(q);
         let doubt = 1e-15 * waves.largest / slope.abs();
         if q == start && doubt < 1e-13 {
             break;
         }
-        let change = -determinant(six, cos_sin(q)) / slope;
+        let change = -view.value(six, waves.degree, q) / slope;
         if !(change.abs() < 0.05) {
             break;
         }

@@ -16,7 +16,7 @@
 //! vanishes for all angles, because of how the axes of an arm lie; the compiler finds out which are good.
 
 use super::eigen::MAX_SIZE;
-use super::elimination::{eliminate, samples};
+use super::elimination::{Six, View, eliminate};
 use super::math::{cos_sin, sqrt};
 use super::null::{Pair, refined, several, single};
 use super::vector::{Line, Motion, Vector, back, cross, dot, minus, plus, times, unit};
@@ -73,6 +73,12 @@ pub struct Order {
 
 /// Roots whose imaginary part is smaller may be real: pairs that fall together lose half of their digits.
 const NEARLY_REAL: f64 = 1e-3;
+
+/// Where the polynomial is smaller than this part of the largest sample, rounding decides where its roots are and which are real.
+const FLAT: f64 = 1e-12;
+
+/// Most views of the polynomial of one order: the whole circle, and places where it is flat.
+const MOST_VIEWS: usize = 4;
 
 /// Roots that are nearer to each other ask for another order, in which the solutions may be farther apart.
 const APART: f64 = 3e-3;
@@ -197,16 +203,41 @@ fn nudged(goal: &Motion, size: f64) -> Motion {
 fn solve(lines: &[Line; 6], goal: &Motion, order: Order, slack: f64, found: &mut Candidates) -> bool {
     let loop_ = arrange(lines, goal, order.code);
     let six = eliminate(&loop_.lines, &loop_.goal, loop_.swapped);
-    let waves = Waves::new(&samples(&six, order.degree), order.degree);
+    let mut view = View::WHOLE;
+    let mut all = true;
+    let before = found.len;
+    for _ in 0..MOST_VIEWS {
+        let (apart, flat) = look(&loop_, &six, order, &view, slack, found);
+        all &= apart;
+        match flat {
+            Some((u, width)) => view = view.zoomed(u, width),
+            None => return all && found.len > before,
+        }
+    }
+    false
+}
+
+/// Adds the candidates that show in one view; says whether their roots lie apart, and where the polynomial is all but zero,
+/// if it is, and how widely.
+fn look(
+    loop_: &Arranged,
+    six: &Six,
+    order: Order,
+    view: &View,
+    slack: f64,
+    found: &mut Candidates,
+) -> (bool, Option<(f64, f64)>) {
+    let waves = Waves::new(&view.samples(six, order.degree), order.degree);
     let mut roots = [Root { angle: 0.0, imaginary: 0.0 }; MAX_SIZE];
     let count = waves.roots(order.squared, &mut roots);
     let multiplicity = if order.squared { 2 } else { 1 };
-    let mut all = count * multiplicity == 2 * order.degree;
+    let mut apart = count * multiplicity == 2 * order.degree;
     let mut done = [false; MAX_SIZE];
-    let before = found.len;
+    let mut flat: Option<f64> = None;
+    let mut least = FLAT * waves.largest;
     let mut add = |turn, [tangent, other]: Pair| {
         let middle = if loop_.swapped { [turn, other, tangent] } else { [turn, tangent, other] };
-        if let Some([q1, q2, q6]) = close(&loop_, middle) {
+        if let Some([q1, q2, q6]) = close(loop_, middle) {
             let mut turns = [[1.0, 0.0]; 6];
             for (joint, turn) in loop_.joints.into_iter().zip([q1, q2, middle[0], middle[1], middle[2], q6]) {
                 turns[joint] = turn;
@@ -216,6 +247,13 @@ fn solve(lines: &[Line; 6], goal: &Motion, order: Order, slack: f64, found: &mut
     };
     for i in 0..count {
         let Root { angle, imaginary } = roots[i];
+        if imaginary.abs() < 1.0 && !(order.squared && imaginary.abs() < NEARLY_REAL) {
+            let [value, slope] = waves.at(angle);
+            let height = value.abs() + NEARLY_REAL * slope.abs();
+            if height < least {
+                (flat, least) = (Some(angle), height);
+            }
+        }
         if done[i] || imaginary.abs() > NEARLY_REAL + 5.0 * sqrt(slack) {
             continue;
         }
@@ -231,29 +269,46 @@ fn solve(lines: &[Line; 6], goal: &Motion, order: Order, slack: f64, found: &mut
             }
         }
         if together > 1 {
-            let turn = cos_sin(angle + shift * multiplicity as f64 / together as f64);
-            let dimension = several(&six, turn, |pair| add(turn, pair));
+            let (turn, _) = view.turn(angle + shift * multiplicity as f64 / together as f64);
+            let dimension = several(six, turn, |pair| add(turn, pair));
             if dimension == together {
                 for (done, near) in done.iter_mut().zip(near) {
                     *done |= near;
                 }
                 continue;
             }
-            all = false;
+            apart = false;
         }
-        let turn = cos_sin(refined(&six, &waves, angle));
-        if let Some(pair) = single(&six, turn) {
+        let (turn, _) = view.turn(refined(six, &waves, view, angle));
+        if let Some(pair) = single(six, turn) {
             add(turn, pair);
         }
     }
-    all && found.len > before
+    // As wide as the roots reach that rounding has moved.
+    let flat = flat.map(|angle| {
+        let mut width = 1e-3;
+        for root in &roots[..count] {
+            let [c, s] = cos_sin(root.angle - angle);
+            let gap = s.abs() + root.imaginary.abs();
+            let [value, slope] = waves.at(root.angle);
+            if c > 0.0
+                && gap < 0.5
+                && gap > width
+                && value.abs() + NEARLY_REAL * slope.abs() < FLAT * waves.largest
+            {
+                width = gap;
+            }
+        }
+        (angle, width)
+    });
+    (apart, flat)
 }
 
 /// The determinant of an order, from which the compiler learns its degree.
 pub fn waves_of(lines: &[Line; 6], goal: &Motion, code: usize) -> Waves {
     let loop_ = arrange(lines, goal, code);
     let six = eliminate(&loop_.lines, &loop_.goal, loop_.swapped);
-    Waves::new(&samples(&six, MAX_DEGREE), MAX_DEGREE)
+    Waves::new(&View::WHOLE.samples(&six, MAX_DEGREE), MAX_DEGREE)
 }
 
 /// Numbers that [`six_of`] takes: six lines as direction and point, the rows of the goal's rotation, its place, and

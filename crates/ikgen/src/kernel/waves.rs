@@ -13,7 +13,8 @@ pub const MAX_SAMPLES: usize = 2 * MAX_DEGREE + 1;
 #[derive(Clone, Copy, Debug)]
 pub struct Waves {
     d: [[f64; 2]; MAX_DEGREE + 1],
-    degree: usize,
+    /// Highest wave.
+    pub degree: usize,
     /// Largest sample in magnitude.
     pub largest: f64,
     /// Where that is, and half a turn before it.
@@ -65,15 +66,17 @@ impl Waves {
         sqrt(self.d[k][0] * self.d[k][0] + self.d[k][1] * self.d[k][1])
     }
 
-    /// Derivative by the angle.
-    pub fn slope(&self, angle: f64) -> f64 {
+    /// Value and derivative.
+    pub fn at(&self, angle: f64) -> [f64; 2] {
         let [c, s] = cos_sin(angle);
-        let (mut x, mut y, mut slope) = (1.0, 0.0, 0.0);
+        let (mut x, mut y) = (1.0, 0.0);
+        let (mut value, mut slope) = (self.d[0][0], 0.0);
         for (k, [real, imaginary]) in self.d.iter().enumerate().take(self.degree + 1).skip(1) {
             (x, y) = (x * c - y * s, x * s + y * c);
+            value += 2.0 * (real * x - imaginary * y);
             slope -= 2.0 * k as f64 * (real * y + imaginary * x);
         }
-        slope
+        [value, slope]
     }
 
     /// All roots; returns how many were found.
@@ -184,7 +187,9 @@ mod tests {
             }
             let waves = Waves::new(&samples, degree);
             let (h, q) = (1e-6, 0.7);
-            assert!((waves.slope(q) - (value(q + h) - value(q - h)) / (2.0 * h)).abs() < 1e-8);
+            let [at, slope] = waves.at(q);
+            assert!((at - value(q)).abs() < 1e-14);
+            assert!((slope - (value(q + h) - value(q - h)) / (2.0 * h)).abs() < 1e-8);
             let mut found = [Root { angle: 0.0, imaginary: 0.0 }; MAX_SIZE];
             assert_eq!(waves.roots(squared, &mut found), angles.len());
             let slope = |a: f64| -> f64 {
