@@ -183,6 +183,20 @@ impl Graph {
         Some(Dep { node, kind: PhantomData })
     }
 
+    /// The nodes whose recipe begins with these hexadecimal digits.
+    pub fn with_recipe(&self, digits: &str) -> Vec<NodeIdx> {
+        self.indices().filter(|&node| self.node(node).recipe.to_string().starts_with(digits)).collect()
+    }
+
+    /// The length of the longest chain of inputs below each node: those of one level do not need each other.
+    pub fn levels(&self) -> Vec<usize> {
+        let mut levels: Vec<usize> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            levels.push(node.inputs.iter().map(|input| levels[input.index()] + 1).max().unwrap_or(0));
+        }
+        levels
+    }
+
     /// The graph in the language of Graphviz: one box per artefact, arrows from inputs to what is computed from them.
     pub fn to_dot(&self) -> String {
         let mut text =

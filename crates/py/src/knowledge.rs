@@ -28,9 +28,16 @@ pub(crate) enum Subject<'py> {
 }
 
 /// Passes progress on to a Python callable and asks whether to go on.
-struct Watch<'a> {
+pub(crate) struct Watch<'a> {
     interrupts: &'a Interrupts,
     progress: Option<Py<PyAny>>,
+}
+
+impl<'a> Watch<'a> {
+    /// Without a callable.
+    pub(crate) fn silent(interrupts: &'a Interrupts) -> Self {
+        Self { interrupts, progress: None }
+    }
 }
 
 impl Observer for Watch<'_> {

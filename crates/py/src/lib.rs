@@ -4,6 +4,7 @@
 //! Ctrl-C. Everything that is wrong with a specification comes as one `SpecificationError` with all diagnostics.
 
 mod arrays;
+mod distributed;
 mod errors;
 mod inverse;
 mod knowledge;
@@ -18,6 +19,8 @@ use pyo3::prelude::*;
 fn _robotc(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("__version__", env!("CARGO_PKG_VERSION"))?;
     errors::register(m)?;
+    m.add_function(wrap_pyfunction!(distributed::plan_build, m)?)?;
+    m.add_function(wrap_pyfunction!(distributed::build, m)?)?;
     m.add_class::<robot::Robot>()?;
     m.add_class::<task::Task>()?;
     m.add_class::<knowledge::KnowledgeBase>()?;

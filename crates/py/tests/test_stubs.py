@@ -7,7 +7,7 @@ from pathlib import Path
 import robotc
 
 # Shapes of dictionaries and names of types, for type checkers alone.
-TYPES_ONLY = {"Array", "Path", "Diagnostic", "Artefact", "Segment"}
+TYPES_ONLY = {"Array", "Path", "Diagnostic", "Artefact", "Segment", "Step"}
 
 
 def stub():
@@ -51,6 +51,13 @@ def test_members_and_parameters():
                 parameters = list(inspect.signature(getattr(native, name)).parameters)[1:]
             declared = [a.arg for a in function.args.args][1:]
             assert declared == parameters, f"{node.name}.{name}"
+
+
+def test_functions():
+    for node in stub().body:
+        if isinstance(node, ast.FunctionDef):
+            declared = [a.arg for a in node.args.args]
+            assert declared == list(inspect.signature(getattr(robotc, node.name)).parameters), node.name
 
 
 def test_typed():

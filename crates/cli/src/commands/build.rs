@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use robotc_kb::depot::{self, Depot, DepotError, TransferError};
-use robotc_kb::{BuildError, Graph, Key, NodeIdx, Shard, build_node};
+use robotc_kb::depot::{self, Depot, Work, WorkError};
+use robotc_kb::{BuildError, Shard};
 
 use crate::knowledge::{self, Display, StoreArgs};
 use crate::output::{Failure, Outcome, print};
@@ -33,70 +33,44 @@ pub(crate) struct Build {
 
 pub(crate) fn run(args: &Build) -> Outcome {
     let graph = knowledge::plan(&crate::input::project(&args.file)?)?;
-    let store = args.store.open()?;
-    let node = find(&graph, &args.node)?;
+    let node = match graph.with_recipe(&args.node)[..] {
+        [node] => node,
+        [] => {
+            let wanted = &args.node;
+            return Err(Failure::Input(format!(
+                "no artefact has recipe {wanted}; `robotc plan-build` lists them"
+            )));
+        }
+        ref several => {
+            let count = several.len();
+            return Err(Failure::Input(format!(
+                "{count} recipes begin with {}; give more digits",
+                args.node
+            )));
+        }
+    };
     let title = graph.node(node).title();
-    let depot = args.depot.as_deref().map(depot::open).transpose()?;
-    let exchange: &dyn Depot = match &depot {
-        Some(depot) => &**depot,
-        None => &*store,
-    };
-    let knowledge = depot::fetch_inputs(&graph, &store, exchange, node)?;
-    if let Some(&input) = graph.node(node).inputs.iter().find(|&&input| knowledge.known(input).is_none()) {
-        let input = graph.node(input);
-        return Err(Failure::Environment(format!(
-            "{title} needs {}, which is not there yet: build {} first",
-            input.title(),
-            input.recipe.short()
-        )));
-    }
+    let store = args.store.open()?;
+    let shared = args.depot.as_deref().map(depot::open).transpose();
+    let shared = shared.map_err(|error| Failure::Environment(error.to_string()))?;
+    let depot: &dyn Depot = shared.as_deref().unwrap_or(&*store);
     let display = Display::new();
-    let built = match knowledge.known(node) {
-        Some(_) => Ok(None),
-        None => build_node(&knowledge, node, exchange, args.shard, &display, || store.writer().map(Box::new)),
-    };
+    let worked = depot::work(&graph, &store, depot, node, args.shard, &display);
     drop(display);
-    match built {
-        Ok(reason) => {
-            let key: Key = knowledge.known(node).expect("it was built or there").key;
-            if depot.is_some() {
-                depot::put_away(&store, exchange, &key)?;
-            }
-            print(&match reason {
-                Some(_) => format!("{title}: computed, key {}", key.short()),
-                None => format!("{title}: there, key {}", key.short()),
-            });
-            Ok(())
+    match worked {
+        Ok(Work::There(key)) => print(&format!("{title}: there, key {}", key.short())),
+        Ok(Work::Computed(key)) => print(&format!("{title}: computed, key {}", key.short())),
+        Ok(Work::Shard { missing, pieces }) => {
+            let shard = args.shard;
+            print(&format!(
+                "{title}: shard {shard} is done; {missing} of {pieces} pieces are left to others"
+            ));
         }
-        Err(error @ BuildError::Unfinished { .. }) => {
-            print(&format!("{title}: shard {} is done; {error}", args.shard));
-            Ok(())
+        Err(WorkError::Build { error: BuildError::Cancelled, .. }) => {
+            return Err(Failure::Environment("interrupted; finished pieces are kept".into()));
         }
-        Err(BuildError::Cancelled) => {
-            Err(Failure::Environment("interrupted; finished pieces are kept".into()))
-        }
-        Err(error) => Err(Failure::Input(format!("{title}: {error}"))),
+        Err(error @ WorkError::Build { .. }) => return Err(Failure::Input(error.to_string())),
+        Err(error) => return Err(Failure::Environment(error.to_string())),
     }
-}
-
-fn find(graph: &Graph, recipe: &str) -> Outcome<NodeIdx> {
-    let matches = |&node: &NodeIdx| graph.node(node).recipe.to_string().starts_with(recipe);
-    let found: Vec<NodeIdx> = graph.indices().filter(matches).collect();
-    match found[..] {
-        [node] => Ok(node),
-        [] => Err(Failure::Input(format!("no artefact has recipe {recipe}; `robotc plan-build` lists them"))),
-        _ => Err(Failure::Input(format!("{} recipes begin with {recipe}; give more digits", found.len()))),
-    }
-}
-
-impl From<DepotError> for Failure {
-    fn from(error: DepotError) -> Self {
-        Self::Environment(error.to_string())
-    }
-}
-
-impl From<TransferError> for Failure {
-    fn from(error: TransferError) -> Self {
-        Self::Environment(error.to_string())
-    }
+    Ok(())
 }

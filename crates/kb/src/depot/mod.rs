@@ -12,6 +12,8 @@ mod folder;
 #[cfg(feature = "build")]
 pub(crate) mod pieces;
 mod transfer;
+#[cfg(feature = "build")]
+mod worker;
 
 use std::path::Path;
 
@@ -19,6 +21,8 @@ use thiserror::Error;
 
 pub use folder::Folder;
 pub use transfer::{TransferError, bring, fetch_inputs, put_away};
+#[cfg(feature = "build")]
+pub use worker::{Work, WorkError, work};
 
 /// Why a depot could not be used.
 #[derive(Debug, Error)]

@@ -19,6 +19,8 @@ from ._robotc import (
     SpecificationError,
     Task,
     __version__,
+    build,
+    plan_build,
 )
 
 __all__ = [
@@ -32,4 +34,6 @@ __all__ = [
     "SpecificationError",
     "Task",
     "__version__",
+    "build",
+    "plan_build",
 ]

@@ -30,6 +30,16 @@ class Artefact(TypedDict):
     key: str | None
     content: str | None
 
+class Step(TypedDict):
+    """An artefact to be computed; `shards` is the largest number of workers that can share it."""
+
+    recipe: str
+    kind: str
+    subjects: list[str]
+    inputs: list[str]
+    shards: int
+    level: int
+
 class Segment(TypedDict):
     """A motion of a plan; `kind` is preshape, reach, approach, grasp, lift, carry, lower, release or retreat."""
 
@@ -83,6 +93,15 @@ class Task:
     def objects(self) -> list[str]: ...
     @property
     def obstacles(self) -> list[str]: ...
+
+def plan_build(subject: Robot | Task) -> list[Step]:
+    """The artefacts that a subject needs, inputs first. Nothing is computed."""
+
+def build(subject: Robot | Task, recipe: str, depot: str, store: Path, shard: str = "0/1") -> bool:
+    """Computes one artefact, or the shard "i/n" of it, with what the folder `depot` has, and puts it there.
+
+    True when the artefact is complete, False when shards of others are missing. `robotc.distributed` runs many of these.
+    """
 
 class InverseKinematics:
     """All joint vectors of an arm that reach a pose."""

@@ -114,10 +114,6 @@ pub(crate) fn run(args: &PlanBuild) -> Outcome {
 }
 
 fn steps(graph: &Graph) -> Vec<Step> {
-    let mut levels: Vec<usize> = Vec::new();
-    for node in graph.nodes() {
-        levels.push(node.inputs.iter().map(|input| levels[input.index()] + 1).max().unwrap_or(0));
-    }
     let step = |(node, &level): (&robotc_kb::graph::Node, &usize)| {
         let mut inputs: Vec<String> =
             node.inputs.iter().map(|&input| graph.node(input).recipe.to_string()).collect();
@@ -132,7 +128,7 @@ fn steps(graph: &Graph) -> Vec<Step> {
             level,
         }
     };
-    graph.nodes().iter().zip(&levels).map(step).collect()
+    graph.nodes().iter().zip(&graph.levels()).map(step).collect()
 }
 
 /// A word for a POSIX shell.
