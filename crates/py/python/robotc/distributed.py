@@ -1,9 +1,10 @@
 """Compiling with many workers: Dask, Ray, a pool of processes, or anything that runs functions elsewhere.
 
     from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
     from robotc import distributed
 
-    with ProcessPoolExecutor() as pool:
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
         distributed.compile("mug.task.toml", depot="/shared/depot", submit=pool.submit)
 
 The workers meet in the depot, a folder that all of them see. Any of them may die; running it again goes on from there.
