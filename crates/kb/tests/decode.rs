@@ -5,7 +5,8 @@ mod support;
 use std::sync::Arc;
 
 use robotc_core::Seed;
-use robotc_kb::{Graph, Store, compile, kinds};
+use robotc_kb::kinds::{GraspSet, Reachability};
+use robotc_kb::{Graph, Kind, Store, codec, compile, kinds};
 
 #[test]
 fn decoders_are_total_and_canonical() {
@@ -35,6 +36,25 @@ fn decoders_are_total_and_canonical() {
             }
         }
     }
+}
+
+/// Stored forms that are right but for one number.
+#[test]
+fn numbers_that_are_none_are_refused() {
+    let grasp = |w: f64| {
+        let (approach, contacts) = ([0.0, 0.0, 1.0], Vec::<[f64; 6]>::new());
+        let grasp = (0_u32, [0.0; 3], [0.0, 0.0, 0.0, w], approach, 0.1, vec![0.0], contacts, 0.5, 0.5);
+        GraspSet::decode(&codec::encode(&vec![grasp])).is_ok()
+    };
+    assert!(grasp(1.0) && !grasp(f64::NAN) && !grasp(0.5));
+    let map = |witness: f32| {
+        let mut counts = vec![0_u8; 72];
+        counts[5] = 1;
+        let rotation = [0.0, 0.0, 0.0, 1.0];
+        let (grid, limits) = (([0.0; 3], rotation, 0.1, 1_u32, 1_u32, 0.0, 0_u32), [-3.0, 3.0]);
+        Reachability::decode(&codec::encode(&(grid, 1_u8, counts, vec![witness], 1_u32, limits))).is_ok()
+    };
+    assert!(map(0.5) && !map(f32::NAN) && !map(f32::INFINITY));
 }
 
 /// The bytes with a few of them changed, inserted, removed or cut off.

@@ -110,6 +110,10 @@ impl ConvexPart {
                 return Err(PartError::NotConvex);
             }
         }
+        // Of corners far enough apart it is infinite, or no number.
+        if !hull.volume().is_finite() {
+            return Err(PartError::NotFinite);
+        }
         if hull.volume() <= 0.0 {
             return Err(PartError::NotConvex);
         }
@@ -281,6 +285,8 @@ mod tests {
         assert_eq!(ConvexPart::from_raw(vec![], vec![]), Err(PartError::NotClosed));
         let stray = vec![[0, 1, 99]];
         assert_eq!(ConvexPart::from_raw(part.points().to_vec(), stray), Err(PartError::BadIndex));
+        let vast = part.points().iter().map(|p| p * 1e120).collect();
+        assert_eq!(ConvexPart::from_raw(vast, part.triangles().to_vec()), Err(PartError::NotFinite));
         let mut dented = part.points().to_vec();
         dented[7] = Point3::new(-0.2, -0.4, -0.6);
         assert!(ConvexPart::from_raw(dented, part.triangles().to_vec()).is_err());

@@ -133,6 +133,7 @@ impl Kind for Reachability {
         if !numbers.clone().all(|x| x.is_finite())
             || s.step <= 0.0
             || s.first_limits.iter().any(|x| x.is_nan())
+            || s.witnesses.iter().any(|x| !x.is_finite())
         {
             return Err(DecodeError::new("a number is not finite"));
         }
