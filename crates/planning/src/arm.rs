@@ -73,6 +73,7 @@ impl ArmModel {
         let limits = MotionLimits {
             velocity: dofs.iter().map(|d| dynamics(d).velocity).collect(),
             acceleration: dofs.iter().map(|d| dynamics(d).acceleration).collect(),
+            jerk: dofs.iter().map(|d| dynamics(d).jerk).collect(),
         };
         let tip_from_tool = arm.gripper.map_or_else(Pose::identity, |g| {
             let gripper = &robot.grippers[g];
@@ -114,6 +115,16 @@ impl ArmModel {
     /// Speed limits.
     pub fn limits(&self) -> &MotionLimits {
         &self.limits
+    }
+
+    /// An upper bound of the distance from the arm's base to its tool, metres: the lengths of all links on the way. The
+    /// strokes of sliding joints are not counted, so that a long rail does not make a large arm.
+    pub fn reach(&self) -> f64 {
+        let bones = self.chain.joints.iter().map(|joint| &joint.previous_from_joint);
+        bones
+            .chain([&self.chain.last_from_tip, &self.tip_from_tool])
+            .map(|p| p.translation.vector.norm())
+            .sum()
     }
 
     /// `base_from_world`, the base being where the arm's chain starts.
@@ -278,6 +289,15 @@ mod tests {
         assert_eq!(nearest_alias(&Axis::bounded(3.5, 6.0), -1.0, 0.0), Some(TAU - 1.0));
         assert_eq!(nearest_alias(&Axis::bounded(-1.0, 1.0), 2.0, 0.0), None);
         assert_eq!(nearest_alias(&Axis::bounded(-1.0, 1.0), 1.0 + 1e-12, 0.0), Some(1.0));
+    }
+
+    #[test]
+    fn the_reach_is_that_of_the_stretched_arm() {
+        let stretched = testbed::arm(false).world_from_tool(&[0.0; 6]).translation.vector;
+        let along_the_links = stretched.x.abs() + stretched.y.abs() + stretched.z.abs();
+        for rail in [false, true] {
+            assert!((testbed::arm(rail).reach() - along_the_links).abs() < 1e-12);
+        }
     }
 
     #[test]

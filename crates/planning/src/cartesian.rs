@@ -21,14 +21,15 @@ pub struct LineOptions {
     pub joint_step: f64,
 }
 
-impl Default for LineOptions {
-    fn default() -> Self {
-        Self { step: 0.02, turn: 0.1, tolerance: 5e-4, joint_step: 0.4 }
+impl LineOptions {
+    /// Options for an arm of this reach, metres: steps of a seventieth of it, a tolerance of a three-thousandth.
+    pub fn for_reach(reach: f64) -> Self {
+        Self { step: reach / 70.0, turn: 0.1, tolerance: reach / 3000.0, joint_step: 0.4 }
     }
 }
 
 /// What ended a straight motion before its end.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Error)]
 pub enum LineObstacle {
     /// The next pose has no inverse kinematics.
     #[error("the pose is out of reach")]
@@ -90,13 +91,16 @@ pub fn cartesian_line<C: EdgeChecker + ?Sized>(
         let fail = |obstacle, path: &Vec<Vec<f64>>| {
             Err(LineFailure { fraction: done, obstacle, path: path.clone() })
         };
-        let splittable = fraction - done > 1e-3 / steps;
+        let splittable = fraction - done > SHORTEST / steps;
         match next_on_branch(arm, here, &at(fraction), options, &mut scratch) {
             Ok(q) => {
                 let middle = checker.space().interpolate(here, &q, 0.5);
                 let offset = arm.world_from_tool(&middle).translation.vector
                     - at(0.5 * (done + fraction)).translation.vector;
-                if offset.norm() > options.tolerance && splittable {
+                if offset.norm() > options.tolerance {
+                    if !splittable {
+                        return fail(LineObstacle::BranchEnds, &path);
+                    }
                     ahead.push(0.5 * (done + fraction));
                     continue;
                 }
@@ -108,7 +112,7 @@ pub fn cartesian_line<C: EdgeChecker + ?Sized>(
                 ahead.pop();
             }
             // Near a singularity joints move fast: shorter steps may stay on the branch.
-            Err(LineObstacle::BranchEnds) if fraction - done > 0.1 / steps => {
+            Err(LineObstacle::BranchEnds) if splittable => {
                 ahead.push(0.5 * (done + fraction));
             }
             Err(obstacle) => return fail(obstacle, &path),
@@ -116,6 +120,10 @@ pub fn cartesian_line<C: EdgeChecker + ?Sized>(
     }
     Ok(path)
 }
+
+/// Steps are halved until they are shorter than this fraction of the planned one: a branch that is left then is not one
+/// that could be driven, and halving on would ask for inverse kinematics thousands of times.
+const SHORTEST: f64 = 0.1;
 
 /// The configuration for `world_from_tool` next to `here`.
 fn next_on_branch(
@@ -185,6 +193,9 @@ mod tests {
     use crate::space::Space;
     use crate::testbed::{self, REST};
     use nalgebra::{Translation3, UnitQuaternion, Vector3};
+    use robotc_core::ik::InverseKinematics;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicU32, Ordering};
 
     /// Joint limits, and a wall that the tool may not pass.
     struct Wall<'a> {
@@ -248,7 +259,7 @@ mod tests {
                 );
                 let mut checker = Wall { arm: &arm, x: f64::INFINITY };
                 let path =
-                    cartesian_line(&arm, &mut checker, &start, &goal, &LineOptions::default()).unwrap();
+                    cartesian_line(&arm, &mut checker, &start, &goal, &LineOptions::for_reach(1.5)).unwrap();
                 assert_eq!(path[0], start);
                 check_line(&arm, &path, &goal);
             }
@@ -261,7 +272,8 @@ mod tests {
         let pose = arm.world_from_tool(&REST);
         let goal = Translation3::new(0.2, 0.0, 0.0) * pose;
         let mut wall = Wall { arm: &arm, x: pose.translation.x + 0.1 };
-        let stopped = cartesian_line(&arm, &mut wall, &REST, &goal, &LineOptions::default()).unwrap_err();
+        let stopped =
+            cartesian_line(&arm, &mut wall, &REST, &goal, &LineOptions::for_reach(1.5)).unwrap_err();
         assert_eq!(stopped.obstacle, LineObstacle::Blocked(Obstruction::Contact(7)));
         assert!((0.35..=0.5).contains(&stopped.fraction), "{}", stopped.fraction);
         let reached = arm.world_from_tool(stopped.path.last().unwrap()).translation.x - pose.translation.x;
@@ -269,8 +281,54 @@ mod tests {
 
         let far = Translation3::new(2.0, 0.0, 0.0) * pose;
         let mut open = Wall { arm: &arm, x: f64::INFINITY };
-        let beyond = cartesian_line(&arm, &mut open, &REST, &far, &LineOptions::default()).unwrap_err();
+        let beyond = cartesian_line(&arm, &mut open, &REST, &far, &LineOptions::for_reach(1.5)).unwrap_err();
         assert!(beyond.fraction > 0.05 && beyond.fraction < 0.5, "{}", beyond.fraction);
         assert!(matches!(beyond.obstacle, LineObstacle::Unreachable | LineObstacle::BranchEnds));
+    }
+
+    /// Changes from one elbow to the other at a height, and counts how often it is asked.
+    struct Flips {
+        inner: testbed::ClosedForm,
+        height: f64,
+        asked: AtomicU32,
+    }
+
+    impl InverseKinematics for Flips {
+        fn variables(&self) -> usize {
+            self.inner.variables()
+        }
+        fn free_variables(&self) -> &[usize] {
+            self.inner.free_variables()
+        }
+        fn solve(&self, base_from_tip: &Pose, free: &[f64], out: &mut IkSolutions) {
+            self.asked.fetch_add(1, Ordering::Relaxed);
+            let mut all = IkSolutions::new();
+            self.inner.solve(base_from_tip, free, &mut all);
+            out.reset(self.variables());
+            let above = base_from_tip.translation.z > self.height;
+            all.iter().filter(|q| (q[2] > 0.0) == above).for_each(|q| out.push(q));
+        }
+    }
+
+    #[test]
+    fn a_branch_that_ends_is_left_soon_and_never_jumped_from() {
+        // Nearly stretched, both elbows are a small change of the joints apart, and no straight motion joins them.
+        let start = [0.0, -0.2, 0.1, 0.0, 0.3, 0.0];
+        let pose = testbed::arm(false).world_from_tool(&start);
+        let tip_height = (pose * testbed::arm(false).tool_from_tip()).translation.z;
+        let flips = Arc::new(Flips {
+            inner: testbed::ClosedForm { rail: false },
+            height: tip_height - 0.024,
+            asked: AtomicU32::new(0),
+        });
+        let arm = testbed::arm_with(false, flips.clone());
+        let goal = Translation3::new(0.0, 0.0, -0.06) * pose;
+        let mut open = Wall { arm: &arm, x: f64::INFINITY };
+        let stopped =
+            cartesian_line(&arm, &mut open, &start, &goal, &LineOptions::for_reach(1.5)).unwrap_err();
+        assert_eq!(stopped.obstacle, LineObstacle::BranchEnds);
+        assert!((0.3..=0.4).contains(&stopped.fraction), "{}", stopped.fraction);
+        let asked = flips.asked.load(Ordering::Relaxed);
+        assert!(asked < 40, "asked {asked} times");
     }
 }

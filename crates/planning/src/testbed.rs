@@ -151,10 +151,14 @@ pub(crate) fn rest(robot: &Robot) -> Configuration {
 
 /// The arm at the world's origin.
 pub(crate) fn arm(rail: bool) -> ArmModel {
+    arm_with(rail, Arc::new(ClosedForm { rail }))
+}
+
+/// The arm with another solver.
+pub(crate) fn arm_with(rail: bool, ik: Arc<dyn InverseKinematics>) -> ArmModel {
     let robot = robot(rail);
     let kinematics = Kinematics::new(robot.model.clone());
     let weights = vec![1.0; robot.arms[0].dofs.len()];
-    let ik = Arc::new(ClosedForm { rail });
     ArmModel::new(&robot, &kinematics, 0, ik, &weights, &Pose::identity(), &rest(&robot))
         .expect("the test arm has a chain")
 }

@@ -8,7 +8,7 @@ use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use robotc_core::Seed;
-use robotc_planning::manipulation::{self, ManipulationOptions};
+use robotc_planning::manipulation;
 use robotc_planning::{Budget, Interrupt};
 use robotc_runtime::film::{TreeKeeper, film};
 use robotc_runtime::{MotionTable, execute, view};
@@ -33,8 +33,6 @@ pub(crate) struct Plan {
     seconds: f64,
 }
 
-/// Largest travel of any point of the robot between two looks of the final check, metres.
-const CERTIFIED_STEP: f64 = 0.002;
 /// Ticks a second of the simulated controller.
 const CONTROL_RATE: f64 = 250.0;
 
@@ -45,7 +43,7 @@ impl Session {
     fn plan(slf: Py<Self>, py: Python<'_>, seed: Option<u64>, time_limit: f64) -> PyResult<Plan> {
         let this = slf.get();
         let seed = Seed::new(seed.unwrap_or(this.session.task().seed));
-        let options = ManipulationOptions::default();
+        let options = this.session.options();
         let mut trees = TreeKeeper::default();
         let start = Instant::now();
         let (plan, seconds) = long::run(py, |interrupts| {
@@ -57,7 +55,7 @@ impl Session {
             };
             let plan = this
                 .session
-                .plan(&options, &Budget::new(&interrupt), seed, CERTIFIED_STEP, &mut trees)
+                .plan(&options, &Budget::new(&interrupt), seed, &mut trees)
                 .map_err(|e| PlanError::new_err(e.to_string()))?;
             let seconds = start.elapsed().as_secs_f64();
             PyResult::Ok((plan, seconds))

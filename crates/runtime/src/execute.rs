@@ -136,10 +136,7 @@ fn apply(
     match event {
         None => {}
         Some(Event::Attach(held)) => {
-            let fingers = task.robot.arms[task.arm]
-                .gripper
-                .map_or_else(Vec::new, |g| task.robot.grippers[g].fingers.clone());
-            world.grab(BodyIdx::new(held.object), held.link, fingers);
+            world.grab(BodyIdx::new(held.object), held.link, held.touching.clone());
         }
         Some(Event::Detach { object, world_from_object }) => {
             let body = BodyIdx::new(*object);

@@ -13,7 +13,8 @@ use robotc_kb::project::{OfArm, OfGripperAndObject, OfRobot, OfShape};
 use robotc_kb::{Knowledge, LoadError};
 use robotc_planning::grasp::GraspSet;
 use robotc_planning::manipulation::{
-    Manipulation, ManipulationOptions, Observer, Plan, PlanFailure, Uncertified, certify, pick_and_place,
+    Manipulation, ManipulationOptions, Measures, Observer, Plan, PlanFailure, Uncertified, certify,
+    gripper_links, pick_and_place,
 };
 use robotc_planning::scene::Scene;
 use robotc_planning::{ArmError, ArmModel, Budget};
@@ -54,10 +55,6 @@ pub enum NoPlan {
 
 /// Plans made before giving up on one that holds.
 const ATTEMPTS: u64 = 4;
-
-/// Weight of a grasp whose cell of the reachability map has no solution at its centre: it may still be reached near
-/// another place of the cell, so it is tried last and not left out.
-const UNREACHED: f64 = 0.05;
 
 /// A task with its artefacts. Nothing is computed that could have been compiled.
 pub struct Session {
@@ -103,16 +100,7 @@ impl Session {
             let set = match robot.arms[task.arm].gripper {
                 Some(gripper) => {
                     let known = knowledge.load::<GraspSetKind>(&OfGripperAndObject { gripper, object: i })?;
-                    let mut ranked = (*known).clone();
-                    if let Some(map) = &reachability {
-                        let base_from_object = arm.base_from_world() * object.world_from_object;
-                        for grasp in &mut ranked {
-                            let base_from_tip =
-                                base_from_object * grasp.object_from_tool * arm.tool_from_tip();
-                            grasp.score *= UNREACHED + (1.0 - UNREACHED) * map.density(&base_from_tip);
-                        }
-                    }
-                    GraspSet::new(&robot.grippers[gripper].name, &object.name, ranked)
+                    GraspSet::new(&robot.grippers[gripper].name, &object.name, (*known).clone())
                 }
                 None => GraspSet::default(),
             };
@@ -141,8 +129,8 @@ impl Session {
         &self.scene
     }
 
-    /// The grasp set of each object of the task, ranked by quality and by how well the arm reaches it where the object
-    /// stands at the start (thesis section 3.1).
+    /// The grasp set of each object of the task, best first. The planner tries them in an order of its own, which also
+    /// asks how well the arm reaches them.
     pub fn grasps(&self) -> &[GraspSet] {
         &self.grasps
     }
@@ -157,15 +145,20 @@ impl Session {
         World::of_task(&self.task, self.kinematics.clone())
     }
 
-    /// Plans the task and certifies the plan: see [`certify`](Self::certify) for `resolution`. A plan that does not hold
-    /// is thrown away and made again from the next stream of `seed`, a few times at most. The result depends on options
-    /// and seed alone unless the budget ends it.
+    /// The default options for this robot: lengths follow from the measures of its arm and hand.
+    pub fn options(&self) -> ManipulationOptions {
+        let gripper = self.task.robot.arms[self.task.arm].gripper;
+        let links = gripper.map_or_else(Vec::new, |g| gripper_links(&self.task.robot, g));
+        ManipulationOptions::new(&Measures::of(&self.arm, &self.scene, &self.task.start, &links))
+    }
+
+    /// Plans the task and certifies the plan. A plan that does not hold is thrown away and made again from the next
+    /// stream of `seed`, a few times at most. The result depends on options and seed alone unless the budget ends it.
     pub fn plan(
         &self,
         options: &ManipulationOptions,
         budget: &Budget<'_>,
         seed: robotc_core::Seed,
-        resolution: f64,
         observer: &mut dyn Observer,
     ) -> Result<Plan, NoPlan> {
         let grasps: Vec<&GraspSet> = self.grasps.iter().collect();
@@ -174,7 +167,7 @@ impl Session {
         loop {
             let plan = pick_and_place(&problem, options, budget, seed.at(attempt), observer)?;
             attempt += 1;
-            match certify(&problem, options, &plan, resolution) {
+            match certify(&problem, options, &plan) {
                 Ok(_) => return Ok(plan),
                 Err(wrong) if attempt == ATTEMPTS => return Err(wrong.into()),
                 Err(_) => {}
@@ -182,16 +175,11 @@ impl Session {
         }
     }
 
-    /// Replays a plan densely and checks everything about it: no point of the robot travels more than `resolution`
-    /// metres between two looks. Gives the number of states looked at.
-    pub fn certify(
-        &self,
-        options: &ManipulationOptions,
-        plan: &Plan,
-        resolution: f64,
-    ) -> Result<u64, Uncertified> {
+    /// Replays a plan densely and checks everything about it: no point of the robot travels more than
+    /// [`ManipulationOptions::certified_step`] between two looks. Gives the number of states looked at.
+    pub fn certify(&self, options: &ManipulationOptions, plan: &Plan) -> Result<u64, Uncertified> {
         let grasps: Vec<&GraspSet> = self.grasps.iter().collect();
-        certify(&self.problem(&grasps), options, plan, resolution)
+        certify(&self.problem(&grasps), options, plan)
     }
 
     fn problem<'a>(&'a self, grasps: &'a [&'a GraspSet]) -> Manipulation<'a> {
@@ -201,6 +189,7 @@ impl Session {
             arm: &self.arm,
             scene: &self.scene,
             grasps,
+            reachability: self.reachability.as_deref().map(|map| map as &dyn robotc_planning::Reachability),
             start: &self.task.start,
         }
     }

@@ -9,11 +9,7 @@ use robotc_core::{Seed, Sources, spec};
 use robotc_kb::os::OsSystem;
 use robotc_kb::{Graph, Knowledge, Project, Store};
 use robotc_planning::Budget;
-use robotc_planning::manipulation::ManipulationOptions;
 use robotc_runtime::Session;
-
-/// Largest travel of any point of the robot between two looks of the certificate, metres.
-const CERTIFIED_STEP: f64 = 0.002;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -34,8 +30,8 @@ fn plan(task: &Path, store: &Path) -> Result<(), Box<dyn std::error::Error>> {
     let knowledge = open(task, store)?;
     let session = Session::open(&knowledge)?;
     let seed = Seed::new(session.task().seed);
-    let options = ManipulationOptions::default();
-    let plan = session.plan(&options, &Budget::unlimited(), seed, CERTIFIED_STEP, &mut ())?;
+    let options = session.options();
+    let plan = session.plan(&options, &Budget::unlimited(), seed, &mut ())?;
 
     // What the controller of a robot would be given: joint values over time, a segment at a time.
     for segment in &plan.segments {

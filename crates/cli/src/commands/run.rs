@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Args;
 use robotc_core::Seed;
 use robotc_kb::{Knowledge, Project};
-use robotc_planning::manipulation::{ManipulationOptions, Plan, SegmentKind};
+use robotc_planning::manipulation::{Plan, SegmentKind};
 use robotc_planning::{Budget, Interrupt};
 use robotc_runtime::film::{TreeKeeper, film};
 use robotc_runtime::record::Recording;
@@ -47,8 +47,6 @@ pub(crate) struct Run {
     store: StoreArgs,
 }
 
-/// Largest travel of any point of the robot between two looks of the final check, metres.
-const CERTIFIED_STEP: f64 = 0.002;
 /// Ticks a second of the simulated controller.
 const CONTROL_RATE: f64 = 250.0;
 
@@ -70,7 +68,7 @@ pub(crate) fn run(args: &Run) -> Outcome {
     let session = session.map_err(|error| Failure::Input(error.to_string()))?;
     let seed = args.seed.unwrap_or(session.task().seed);
 
-    let options = ManipulationOptions::default();
+    let options = session.options();
     let mut trees = TreeKeeper::default();
     let planned = clock.stage("plan", || {
         let start = Instant::now();
@@ -81,7 +79,7 @@ pub(crate) fn run(args: &Run) -> Outcome {
                 (start.elapsed().as_secs_f64() > args.time_limit).then_some(Interrupt::TimeUp)
             }
         };
-        session.plan(&options, &Budget::new(&interrupt), Seed::new(seed), CERTIFIED_STEP, &mut trees)
+        session.plan(&options, &Budget::new(&interrupt), Seed::new(seed), &mut trees)
     });
     let done = planned.map_err(|error| error.to_string()).and_then(|plan| {
         let execution =
@@ -117,8 +115,9 @@ const SUCCESS: &str = "success";
 
 /// `success`, or what is missing.
 fn verdict(session: &Session, execution: &Execution, plan: &Plan) -> String {
-    if let Some(skipped) = plan.skipped.first() {
-        return format!("{} not reached: {}", count(plan.skipped.len(), "goal"), skipped.reason);
+    if !plan.skipped.is_empty() {
+        let reasons: Vec<String> = plan.skipped.iter().map(|skipped| skipped.reason.to_string()).collect();
+        return format!("{} not reached: {}", count(plan.skipped.len(), "goal"), reasons.join("; "));
     }
     match execution.missed_goals(session.task(), plan).first() {
         Some((goal, off)) => format!("goal {goal} missed by {off:.4} m"),

@@ -140,20 +140,30 @@ fn robots_start_free() {
     }
 }
 
+/// The distance of each object, lifted by `height` metres, from the nearest obstacle.
+pub(crate) fn lifted_gaps<'a>(task: &'a Task, height: f64) -> Vec<(&'a str, f64)> {
+    let (things, objects) = things(task);
+    let (objects, obstacles) = things.split_at(objects);
+    let gap = |(name, parts, pose): &(&'a str, Parts, Pose)| {
+        let lifted = Pose::translation(0.0, 0.0, height) * pose;
+        let gaps = obstacles.iter().map(|(_, other, at)| distance(parts, &lifted, other, at));
+        (*name, gaps.fold(f64::INFINITY, f64::min))
+    };
+    objects.iter().map(gap).collect()
+}
+
 #[test]
 fn objects_stand_on_something_and_apart() {
     for path in files(&specs(), ".task.toml") {
         let task = load_task(&path).task;
+        for (name, gap) in lifted_gaps(&task, 0.0) {
+            assert!(gap < 1e-5, "{}: {name} hangs {gap} m in the air", path.display());
+        }
+        for (name, gap) in lifted_gaps(&task, 0.001) {
+            assert!((gap - 0.001).abs() < 1e-5, "{}: {name} sticks in something", path.display());
+        }
         let (things, objects) = things(&task);
         for (i, (name, parts, pose)) in things[..objects].iter().enumerate() {
-            let gap = |height| {
-                let lifted = Pose::translation(0.0, 0.0, height) * pose;
-                let to_others =
-                    things[objects..].iter().map(|(_, other, at)| distance(parts, &lifted, other, at));
-                to_others.fold(f64::INFINITY, f64::min)
-            };
-            assert!(gap(0.0) < 1e-5, "{}: {name} hangs {} m in the air", path.display(), gap(0.0));
-            assert!((gap(0.001) - 0.001).abs() < 1e-5, "{}: {name} sticks in something", path.display());
             for (other, other_parts, other_pose) in &things[i + 1..objects] {
                 let gap = distance(parts, pose, other_parts, other_pose);
                 assert!(gap > 0.03, "{}: {name} and {other}: {gap} m", path.display());

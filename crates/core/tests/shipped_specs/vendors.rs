@@ -10,6 +10,7 @@ use robotc_core::spec::{self, ParameterTable};
 use robotc_core::urdf::MeshPolicy;
 
 use crate::shapes::corners;
+use crate::tasks::lifted_gaps;
 use crate::{Disk, files, load, shared, specs};
 
 /// A shipped robot, a real description, links and joints of both that are the same.
@@ -154,6 +155,9 @@ fn vendor_specifications_load() {
             let lowest = object.geometry.iter().flat_map(corners).map(|p| (object.world_from_object * p).z);
             let lowest = lowest.fold(f64::INFINITY, f64::min);
             assert!((lowest - 0.6).abs() < 0.009, "{} starts at height {lowest}", object.name);
+        }
+        for (name, gap) in lifted_gaps(&task, 0.003) {
+            assert!(gap > 0.001, "{}: {name} sticks in something", path.display());
         }
     }
 }

@@ -5,8 +5,9 @@ use robotc_core::task::Goal;
 use robotc_core::{BodyIdx, Configuration, Trajectory};
 use thiserror::Error;
 
+use super::options::ManipulationOptions;
 use super::plan::{Event, Held, Plan, Segment, SegmentKind};
-use super::problem::{Manipulation, ManipulationOptions, gripper_links, motion_limits};
+use super::problem::{Manipulation, allowed_sink, gripper_links, motion_limits};
 use crate::edge::EdgeChecker;
 use crate::scene::{Grip, RobotChecker, Rules, Scene};
 use crate::space::{Axis, Space};
@@ -36,15 +37,15 @@ const LIMIT_USE: f64 = 1.0 + 1e-6;
 const PLACED: f64 = 1e-5;
 
 /// Replays a plan from the start of the problem: segments join, limits hold, nothing collides (no point travels more
-/// than `resolution` metres between two looks), held objects stay as upright as asked and end up where the plan says.
+/// than [`ManipulationOptions::certified_step`] between two looks), held objects stay as upright as asked and end up where the plan says.
 ///
 /// Returns the number of states looked at.
 pub fn certify(
     problem: &Manipulation<'_>,
     options: &ManipulationOptions,
     plan: &Plan,
-    resolution: f64,
 ) -> Result<u64, Uncertified> {
+    let resolution = options.certified_step;
     let robot = &*problem.task.robot;
     let gripper = robot.arms[problem.task.arm].gripper;
     let links = gripper.map_or_else(Vec::new, |g| gripper_links(robot, g));
@@ -128,7 +129,7 @@ fn rules(
         held,
         gripper: links.to_vec(),
         target: near.then_some(BodyIdx::new(object)),
-        sink: stands.then_some(options.sink),
+        sink: stands.then(|| allowed_sink(problem, options, object)),
     }
 }
 

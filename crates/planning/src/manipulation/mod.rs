@@ -6,6 +6,7 @@
 
 mod certify;
 mod destinations;
+mod options;
 mod picks;
 mod placings;
 mod plan;
@@ -18,7 +19,10 @@ mod tests;
 
 pub use certify::{Uncertified, certify};
 pub use destinations::destination_poses;
-pub use plan::{Choice, Event, GoalFailure, Held, Plan, Segment, SegmentKind, SkippedGoal, Stage};
-pub use problem::{Manipulation, ManipulationOptions};
-pub use rejections::{Filter, Rejections};
+pub use options::{ManipulationOptions, Measures};
+pub use plan::{
+    Choice, Event, GoalFailure, Held, Nearest, Plan, Segment, SegmentKind, SkippedGoal, Stage, Tried,
+};
+pub use problem::{Manipulation, gripper_links};
+pub use rejections::{Cause, Filter, Rejections};
 pub use sequence::{Observer, PlanFailure, pick_and_place};

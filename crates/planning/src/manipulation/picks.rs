@@ -6,13 +6,15 @@ use robotc_core::rng::Rng;
 use robotc_core::{Configuration, LinkPoses, Pose};
 
 use super::placings::{Destinations, Placing, PlacingSampler, Placings, free_values};
+use super::plan::Tried;
 use super::problem::GoalContext;
-use super::rejections::{Filter, Rejections};
-use super::stretch::{Reason, back_off, fine_checker, fingers_move, raise, state_is_free};
+use super::rejections::{Cause, Filter, Rejections};
+use super::stretch::{back_off, cause, fine_checker, fingers_move, raise, state_is_free};
 use crate::budget::{Budget, Interrupt};
 use crate::constraint::Upright;
 use crate::goal::{GoalDraw, GoalSampler};
 use crate::grasp::{Grasp, GraspSet};
+use crate::reachability::ranking;
 use crate::scene::{Movers, Rules, Scene};
 
 /// A grasp with all its straight motions.
@@ -40,6 +42,9 @@ pub(super) struct PickSampler<'a, 's> {
     pub(super) rng: Rng,
     /// Grasps still in question, by rank.
     pub(super) alive: Vec<usize>,
+    /// Grasps looked at, and picks found, so far.
+    pub(super) looked_at: usize,
+    pub(super) usable: usize,
     /// Position in `alive`, and round of free values.
     pub(super) cursor: usize,
     pub(super) round: usize,
@@ -69,7 +74,9 @@ impl<'a, 's> PickSampler<'a, 's> {
             q: q.clone(),
             tilt,
             rng,
-            alive: (0..set.grasps.len()).collect(),
+            alive: ranking(set, cx.problem.reachability, cx.problem.arm, scene.world_from_body(cx.body())),
+            looked_at: 0,
+            usable: 0,
             cursor: 0,
             round: 0,
             branches: Vec::new(),
@@ -77,6 +84,11 @@ impl<'a, 's> PickSampler<'a, 's> {
             handed_out: 0,
             rejections: Rejections::default(),
         }
+    }
+
+    /// How many grasps were looked at.
+    pub(super) fn tried(&self) -> Tried {
+        Tried { known: self.set.grasps.len(), looked_at: self.looked_at, usable: self.usable }
     }
 
     /// Takes a grasp out of the search; the other picks found are handed out again.
@@ -108,11 +120,12 @@ impl<'a, 's> PickSampler<'a, 's> {
         }
         let index = self.alive[self.cursor];
         let grasp = &self.set.grasps[index];
+        self.looked_at += usize::from(self.round == 0);
         let world_from_tool = self.scene.world_from_body(self.cx.body()) * grasp.object_from_tool;
         if self.round == 0
-            && let Err((filter, reason)) = self.hand_check(grasp, &world_from_tool)
+            && let Err((filter, cause)) = self.hand_check(grasp, &world_from_tool)
         {
-            self.rejections.add_because(filter, reason);
+            self.rejections.add_because(filter, cause);
             self.alive.remove(self.cursor);
             return Ok(None);
         }
@@ -130,7 +143,7 @@ impl<'a, 's> PickSampler<'a, 's> {
         Ok(None)
     }
 
-    fn hand_check(&self, grasp: &Grasp, world_from_tool: &Pose) -> Result<(), (Filter, Reason)> {
+    fn hand_check(&self, grasp: &Grasp, world_from_tool: &Pose) -> Result<(), (Filter, Cause)> {
         hand_is_free(&self.cx, self.scene, grasp, world_from_tool).map_err(|r| (Filter::HandAtGrasp, r))?;
         let rules = self.cx.touching();
         hand_at(&self.cx, self.scene, &grasp.closed, world_from_tool, &rules)
@@ -138,10 +151,10 @@ impl<'a, 's> PickSampler<'a, 's> {
     }
 
     /// All straight motions of one branch.
-    fn check(&mut self, index: usize, at: &[f64]) -> Result<Pick, (Filter, Option<Reason>)> {
+    fn check(&mut self, index: usize, at: &[f64]) -> Result<Pick, (Filter, Option<Cause>)> {
         let cx = self.cx;
         let grasp = &self.set.grasps[index];
-        let because = |filter| move |reason| (filter, Some(reason));
+        let because = |filter| move |cause| (filter, Some(cause));
         let open = cx.with_fingers(&self.q, &cx.gripper().preshapes[grasp.preshape].values);
         state_is_free(&mut fine_checker(&cx, self.scene, &open, cx.touching()), at)
             .map_err(because(Filter::ArmAtGrasp))?;
@@ -198,10 +211,13 @@ impl GoalSampler for PickSampler<'_, '_> {
                 Err(()) => return Ok(GoalDraw::Exhausted),
                 Ok(None) => return Ok(GoalDraw::Pending),
                 Ok(Some((index, at))) => match self.check(index, &at) {
-                    Ok(pick) => self.found.push(pick),
-                    Err((filter, reason)) => {
-                        match reason {
-                            Some(reason) => self.rejections.add_because(filter, reason),
+                    Ok(pick) => {
+                        self.usable += 1;
+                        self.found.push(pick);
+                    }
+                    Err((filter, cause)) => {
+                        match cause {
+                            Some(cause) => self.rejections.add_because(filter, cause),
                             None => self.rejections.add(filter),
                         }
                         return Ok(GoalDraw::Pending);
@@ -248,7 +264,7 @@ pub(super) fn hand_is_free(
     scene: &Scene,
     grasp: &Grasp,
     world_from_tool: &Pose,
-) -> Result<(), Reason> {
+) -> Result<(), Cause> {
     let open = &cx.gripper().preshapes[grasp.preshape].values;
     hand_at(cx, scene, open, world_from_tool, &cx.touching())?;
     let clear = Rules { target: None, ..cx.touching() };
@@ -272,7 +288,7 @@ fn hand_at(
     fingers: &[f64],
     world_from_tool: &Pose,
     rules: &Rules,
-) -> Result<(), Reason> {
+) -> Result<(), Cause> {
     let gripper = cx.gripper();
     let kinematics = cx.problem.kinematics;
     let q = cx.with_fingers(cx.problem.start, fingers);
@@ -282,5 +298,5 @@ fn hand_at(
     let world_from_palm = world_from_tool * gripper.palm_from_tool.inverse();
     let world_from_root = world_from_palm * poses.root_from(gripper.palm).inverse();
     let free = scene.against_bodies(&world_from_root, &poses, &Movers::of(cx.gripper_links), rules, 0.0);
-    free.map(|_| ()).map_err(|touch| scene.describe(touch.into()).unwrap_or_default())
+    free.map(|_| ()).map_err(|touch| cause(scene, touch.into()))
 }

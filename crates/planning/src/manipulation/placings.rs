@@ -8,7 +8,7 @@ use robotc_core::{Configuration, Pose};
 use super::picks::hand_is_free;
 use super::problem::GoalContext;
 use super::rejections::{Filter, Rejections};
-use super::stretch::{back_off, fine_checker, fingers_move, raise, state_is_free};
+use super::stretch::{back_off, cause, fine_checker, fingers_move, raise, state_is_free};
 use crate::budget::{Budget, Interrupt};
 use crate::constraint::Constraint;
 use crate::goal::{GoalDraw, GoalSampler};
@@ -37,12 +37,11 @@ impl Destinations {
     ) -> Option<&Scene> {
         if self.scenes[index].is_none() {
             let pose = self.poses[index];
-            let free = scene.body_against_bodies(cx.body(), pose, cx.options.sink);
+            let free = scene.body_against_bodies(cx.body(), pose, cx.sink());
             self.scenes[index] = Some(match free {
                 Ok(()) => Some(scene.with_body_at(cx.body(), pose)),
                 Err(touch) => {
-                    let reason = scene.describe(touch.into()).unwrap_or_default();
-                    rejections.add_because(Filter::Destination, reason);
+                    rejections.add_because(Filter::Destination, cause(scene, touch.into()));
                     None
                 }
             });
@@ -111,9 +110,9 @@ impl PlacingSampler<'_, '_, '_> {
             return Some(false);
         };
         if round == 0
-            && let Err(reason) = hand_is_free(&cx, there, p.grasp, &world_from_tool)
+            && let Err(cause) = hand_is_free(&cx, there, p.grasp, &world_from_tool)
         {
-            self.rejections.add_because(Filter::HandAtDestination, reason);
+            self.rejections.add_because(Filter::HandAtDestination, cause);
             return Some(false);
         }
         let free = free_values(&cx, round, &p.near, self.rng);
@@ -141,14 +140,14 @@ impl PlacingSampler<'_, '_, '_> {
             return None;
         }
         let checked = state_is_free(&mut fine_checker(&cx, p.scene, &closed, rules.clone()), at);
-        if let Err(reason) = checked {
-            self.rejections.add_because(Filter::ArmAtDestination, reason);
+        if let Err(cause) = checked {
+            self.rejections.add_because(Filter::ArmAtDestination, cause);
             return None;
         }
         let mut lower = match raise(&cx, p.scene, &closed, at, &rules) {
             Ok(path) => path,
-            Err(reason) => {
-                self.rejections.add_because(Filter::Lower, reason);
+            Err(cause) => {
+                self.rejections.add_because(Filter::Lower, cause);
                 return None;
             }
         };
@@ -163,8 +162,8 @@ impl PlacingSampler<'_, '_, '_> {
             .and_then(|()| back_off(&cx, there, &open, at, &direction));
         match retreat {
             Ok(retreat) => Some(Placing { world_from_object, lower, retreat }),
-            Err(reason) => {
-                self.rejections.add_because(Filter::Retreat, reason);
+            Err(cause) => {
+                self.rejections.add_because(Filter::Retreat, cause);
                 None
             }
         }

@@ -5,6 +5,7 @@ use std::fmt;
 use robotc_core::{LinkIdx, Pose, Trajectory};
 
 use super::Rejections;
+use crate::budget::Interrupt;
 
 /// What a segment is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -54,6 +55,8 @@ pub struct Held {
     pub link: LinkIdx,
     /// The object in the frame of that link.
     pub link_from_object: Pose,
+    /// Links that touch it when it is picked up, ascending.
+    pub touching: Vec<LinkIdx>,
 }
 
 /// What changes in the world at the end of a segment.
@@ -135,12 +138,45 @@ pub struct Choice {
 /// The stage at which the planner gave up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
+    /// The object is stuck in something where it stands.
+    Start,
     /// No grasp passed all filters.
     Grasps,
     /// No path to any grasp.
     Reach,
     /// No path from any grasp to the destination.
     Carry,
+}
+
+/// How many grasps a search got through.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Tried {
+    /// Grasps known.
+    pub known: usize,
+    /// Of these, looked at.
+    pub looked_at: usize,
+    /// Grasps with a solution of the arm for which every straight motion is free; one grasp may have several.
+    pub usable: usize,
+}
+
+/// How near a search for a free motion came to a goal before it gave up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// From tool to tool, metres.
+    pub distance: f64,
+    /// Between the orientations of the tools, radians.
+    pub angle: f64,
+}
+
+impl fmt::Display for Nearest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let degrees = self.angle.to_degrees();
+        write!(
+            f,
+            "at the nearest, the tool was {:.3} m and {degrees:.0} degrees from the goal",
+            self.distance
+        )
+    }
 }
 
 /// Why a goal is not reached.
@@ -152,17 +188,50 @@ pub struct GoalFailure {
     pub stage: Stage,
     /// What ended it, in words.
     pub message: String,
+    /// Set when the search was told to stop: the counts are those so far.
+    pub interrupt: Option<Interrupt>,
+    /// How many grasps were looked at.
+    pub tried: Tried,
     /// What each filter rejected, and what touched what.
     pub rejections: Rejections,
+    /// How near the free motions came that did not arrive.
+    pub nearest: Option<Nearest>,
+}
+
+impl GoalFailure {
+    /// A failure with nothing counted yet.
+    pub(super) fn new(object: &str, stage: Stage) -> Box<Self> {
+        Box::new(Self {
+            object: object.to_owned(),
+            stage,
+            message: String::new(),
+            interrupt: None,
+            tried: Tried::default(),
+            rejections: Rejections::default(),
+            nearest: None,
+        })
+    }
 }
 
 impl fmt::Display for GoalFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { object, message, .. } = self;
-        match self.stage {
-            Stage::Grasps => write!(f, "no grasp of {object} can be used: {message}")?,
-            Stage::Reach => write!(f, "no way to {object}: {message}")?,
-            Stage::Carry => write!(f, "no way to carry {object} to its destination: {message}")?,
+        match (self.interrupt, self.stage) {
+            (None, Stage::Start) => write!(f, "{object} cannot be picked up: {message}")?,
+            (None, Stage::Grasps) => write!(f, "no grasp of {object} can be used: {message}")?,
+            (None, Stage::Reach) => write!(f, "no way to {object}: {message}")?,
+            (None, Stage::Carry) => write!(f, "no way to carry {object} to its destination: {message}")?,
+            (Some(interrupt), stage) => {
+                let doing = match stage {
+                    Stage::Start | Stage::Grasps => "looking for a grasp of",
+                    Stage::Reach => "looking for a way to",
+                    Stage::Carry => "looking for a way to carry",
+                };
+                write!(f, "{interrupt} while {doing} {object}: {message}")?;
+            }
+        }
+        if let Some(nearest) = self.nearest {
+            write!(f, "; {nearest}")?;
         }
         if !self.rejections.is_empty() {
             write!(f, " ({})", self.rejections)?;

@@ -5,14 +5,13 @@ use robotc_core::robot::{Gripper, Robot};
 use robotc_core::task::{Goal, Task};
 use robotc_core::{BodyIdx, Configuration, DofIdx, Kinematics, LinkIdx, Pose};
 
+use super::options::ManipulationOptions;
 use crate::arm::ArmModel;
-use crate::cartesian::LineOptions;
 use crate::grasp::GraspSet;
-use crate::rrt::RrtOptions;
+use crate::reachability::Reachability;
 use crate::scene::{Grip, Rules, Scene};
-use crate::smooth::{DEFAULT_SMOOTHERS, Smoother};
 use crate::space::{Axis, Space};
-use crate::timing::{MotionLimits, TimingOptions};
+use crate::timing::MotionLimits;
 
 /// A task with all that is known about it.
 #[derive(Clone, Copy)]
@@ -28,69 +27,10 @@ pub struct Manipulation<'a> {
     pub scene: &'a Scene,
     /// The grasp set of each object of the task, in their order.
     pub grasps: &'a [&'a GraspSet],
+    /// What is known about the arm's reach; grasps are tried in its order.
+    pub reachability: Option<&'a dyn Reachability>,
     /// Where the robot is now.
     pub start: &'a Configuration,
-}
-
-/// Parameters of a pick-and-place planner. Lengths are metres.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ManipulationOptions {
-    /// The searches for free motions.
-    pub rrt: RrtOptions,
-    /// What is done to their paths, in order.
-    pub smoothers: Vec<Smoother>,
-    /// Straight motions of the tool.
-    pub line: LineOptions,
-    /// Times along paths.
-    pub timing: TimingOptions,
-    /// Distance that free motions keep from everything, object included.
-    pub margin: f64,
-    /// Largest travel of any point between two checked states of a free motion. No more than twice the margin, so that
-    /// the states in between are free too.
-    pub resolution: f64,
-    /// The same for straight motions, which go near and touch.
-    pub fine_resolution: f64,
-    /// Length of the straight approach and of the retreat.
-    pub approach: f64,
-    /// Last part of the approach, in which the open gripper may touch the object.
-    pub contact: f64,
-    /// Longest straight lift and lowering; shorter ones, halved twice, are tried where it does not fit.
-    pub lift: f64,
-    /// How deep a held object may seem to be in what it stands on.
-    pub sink: f64,
-    /// Destinations tried for each goal.
-    pub destinations: usize,
-    /// Candidate placings looked at for each grasp before it counts as hopeless.
-    pub placings: u32,
-    /// For a redundant arm, values of the free joints tried for each grasp and each placing.
-    pub free_samples: u32,
-    /// Branches of inverse kinematics tried for each grasp and free value, nearest first.
-    pub branches: usize,
-    /// Grasps for which a free motion to the destination is searched before the goal counts as unreachable.
-    pub attempts: u32,
-}
-
-impl Default for ManipulationOptions {
-    fn default() -> Self {
-        Self {
-            rrt: RrtOptions { max_iterations: 4000, ..RrtOptions::default() },
-            smoothers: DEFAULT_SMOOTHERS.to_vec(),
-            line: LineOptions::default(),
-            timing: TimingOptions::default(),
-            margin: 0.005,
-            resolution: 0.01,
-            fine_resolution: 0.005,
-            approach: 0.08,
-            contact: 0.01,
-            lift: 0.08,
-            sink: 0.003,
-            destinations: 64,
-            placings: 40,
-            free_samples: 8,
-            branches: 4,
-            attempts: 8,
-        }
-    }
 }
 
 /// One goal of the task, and what its planning needs at hand.
@@ -139,17 +79,29 @@ impl<'a> GoalContext<'a> {
 
     /// Rules near the object: the open gripper may touch it.
     pub(super) fn touching(&self) -> Rules {
-        Rules { target: Some(self.body()), gripper: self.gripper_links.to_vec(), ..Rules::default() }
+        Rules {
+            margin: self.options.fine_margin(),
+            target: Some(self.body()),
+            gripper: self.gripper_links.to_vec(),
+            ..Rules::default()
+        }
     }
 
     /// Rules of the straight motions with the object: it stands on something at one end.
     pub(super) fn standing(&self, held: Grip) -> Rules {
         Rules {
+            margin: self.options.fine_margin(),
             held: Some(held),
-            sink: Some(self.options.sink),
+            sink: Some(self.sink()),
             gripper: self.gripper_links.to_vec(),
             ..Rules::default()
         }
+    }
+
+    /// How deep the object may seem to be in what it stands on, metres, at the states that are looked at. Half of what
+    /// is allowed: the rest is for the states in between.
+    pub(super) fn sink(&self) -> f64 {
+        0.5 * allowed_sink(&self.problem, self.options, self.object)
     }
 
     /// The object in the gripper, for a grasp with this `object_from_tool`.
@@ -175,6 +127,11 @@ impl<'a> GoalContext<'a> {
     }
 }
 
+/// How deep an object may seem to be in what it stands on, metres.
+pub(super) fn allowed_sink(problem: &Manipulation<'_>, options: &ManipulationOptions, object: usize) -> f64 {
+    options.sink * problem.scene.body_diagonal(BodyIdx::new(object))
+}
+
 /// The configuration space of a gripper's fingers.
 pub(super) fn finger_space(robot: &Robot, gripper: usize) -> Space {
     let axis = |&dof: &DofIdx| {
@@ -190,11 +147,12 @@ pub(super) fn motion_limits(robot: &Robot, dofs: &[DofIdx]) -> MotionLimits {
     MotionLimits {
         velocity: dofs.iter().map(|d| dynamics(d).velocity).collect(),
         acceleration: dofs.iter().map(|d| dynamics(d).acceleration).collect(),
+        jerk: dofs.iter().map(|d| dynamics(d).jerk).collect(),
     }
 }
 
 /// Links of a gripper, ascending: the palm with everything rigidly joined below it or hanging on it.
-pub(super) fn gripper_links(robot: &Robot, gripper: usize) -> Vec<LinkIdx> {
+pub fn gripper_links(robot: &Robot, gripper: usize) -> Vec<LinkIdx> {
     let mut links = robot.model.subtree(robot.grippers[gripper].palm);
     links.sort();
     links

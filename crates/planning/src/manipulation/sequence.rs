@@ -8,14 +8,15 @@ use robotc_core::{BodyIdx, Configuration, Pose, Seed, Trajectory};
 use thiserror::Error;
 
 use super::destinations::destination_poses;
+use super::options::ManipulationOptions;
 use super::picks::{Pick, PickSampler, placings, upright};
 use super::placings::{Destinations, Placing, PlacingSampler};
-use super::plan::{Choice, Event, GoalFailure, Held, Plan, Segment, SegmentKind, SkippedGoal, Stage};
-use super::problem::{
-    GoalContext, Manipulation, ManipulationOptions, finger_space, gripper_links, motion_limits,
+use super::plan::{
+    Choice, Event, GoalFailure, Held, Nearest, Plan, Segment, SegmentKind, SkippedGoal, Stage, Tried,
 };
+use super::problem::{GoalContext, Manipulation, finger_space, gripper_links, motion_limits};
 use super::rejections::{Filter, Rejections};
-use super::stretch::fine_checker;
+use super::stretch::{cause, fine_checker};
 use crate::budget::{Budget, Interrupt};
 use crate::constraint::Constraint;
 use crate::edge::{EdgeChecker, Obstruction};
@@ -47,8 +48,13 @@ pub enum PlanFailure {
     #[error("arm {0} has no gripper")]
     NoGripper(String),
     /// The budget ended before the first goal was reached.
-    #[error("{0} before a plan was found")]
-    Interrupted(Interrupt),
+    #[error("no plan was found: {}", Reasons(.skipped))]
+    Interrupted {
+        /// Why.
+        interrupt: Interrupt,
+        /// What had been tried for each goal.
+        skipped: Vec<SkippedGoal>,
+    },
     /// No goal can be reached.
     #[error("{}", Reasons(.0))]
     NoGoal(Vec<SkippedGoal>),
@@ -70,12 +76,6 @@ struct Reached {
     segments: Vec<Segment>,
     choice: Choice,
     q: Configuration,
-}
-
-/// What kept a goal from being reached.
-enum Miss {
-    Interrupted(Interrupt),
-    Failed(Box<GoalFailure>),
 }
 
 /// Plans all goals of the task, in order; one that fails is tried again after the others, when they have made room.
@@ -123,31 +123,25 @@ pub fn pick_and_place(
                     plan.segments.extend(reached.segments);
                     plan.choices.push(reached.choice);
                 }
-                Err(Miss::Failed(reason)) => missed.push(SkippedGoal { goal: number, reason: *reason }),
-                Err(Miss::Interrupted(interrupt)) if plan.choices.is_empty() => {
-                    return Err(PlanFailure::Interrupted(interrupt));
-                }
-                Err(Miss::Interrupted(interrupt)) => missed.push(SkippedGoal {
-                    goal: number,
-                    reason: GoalFailure {
-                        object: cx.object_name().to_owned(),
-                        stage: Stage::Grasps,
-                        message: interrupt.to_string(),
-                        rejections: Rejections::default(),
-                    },
-                }),
+                Err(reason) => missed.push(SkippedGoal { goal: number, reason: *reason }),
             }
         }
         pending = missed.iter().map(|m| m.goal).collect();
-        if pending.is_empty() || pending.len() == before {
+        let interrupted = missed.iter().any(|m| m.reason.interrupt.is_some());
+        if pending.is_empty() || pending.len() == before || interrupted {
             plan.skipped = missed;
             break;
         }
     }
-    if plan.choices.is_empty() && !plan.skipped.is_empty() {
-        return Err(PlanFailure::NoGoal(plan.skipped));
+    let skipped = match plan.choices.is_empty() {
+        true => std::mem::take(&mut plan.skipped),
+        false => vec![],
+    };
+    match skipped.iter().find_map(|s| s.reason.interrupt) {
+        Some(interrupt) => Err(PlanFailure::Interrupted { interrupt, skipped }),
+        None if !skipped.is_empty() => Err(PlanFailure::NoGoal(skipped)),
+        None => Ok(plan),
     }
-    Ok(plan)
 }
 
 /// Plans one goal from configuration `q`.
@@ -158,7 +152,8 @@ fn plan_goal(
     budget: &Budget<'_>,
     seed: Seed,
     observer: &mut dyn Observer,
-) -> Result<Reached, Miss> {
+) -> Result<Reached, Box<GoalFailure>> {
+    stands_free(cx, scene)?;
     let Goal::Place { destination, keep_upright, .. } = cx.goal();
     let set = cx.problem.grasps[cx.object];
     let poses = destination_poses(destination, cx.options.destinations, &mut seed.split("destination").rng());
@@ -167,35 +162,31 @@ fn plan_goal(
         PickSampler::new(*cx, scene, set, &mut destinations, q, *keep_upright, seed.split("grasps").rng());
     let mut rng = seed.split("search").rng();
     let start = cx.arm_values(q);
-    let fail = |stage, message: String, rejections: &Rejections| {
-        let object = cx.object_name().to_owned();
-        Err(Miss::Failed(Box::new(GoalFailure { object, stage, message, rejections: rejections.clone() })))
-    };
-    let mut carry_failures = Rejections::default();
-    let mut last = None;
+    let mut carries = Carries::default();
     for _ in 0..cx.options.attempts {
         let rules = start_rules(cx, scene, q, &start);
         let mut reach = FreeMotion { cx, scene, q, rules, constraint: None, kind: SegmentKind::Reach };
         let solution = match reach.search(&start, &mut sampler, budget, &mut rng, observer) {
             Ok(solution) => solution,
             Err(failure) => {
-                interrupted(&failure)?;
-                sampler.rejections.merge(&carry_failures);
-                return match (failure.reason, last) {
-                    (RrtFailureReason::NoGoal, Some(message)) => {
-                        fail(Stage::Carry, message, &sampler.rejections)
-                    }
-                    (RrtFailureReason::NoGoal, None) => {
-                        let message = format!("none of {} passes all tests", set.grasps.len());
-                        fail(Stage::Grasps, message, &sampler.rejections)
-                    }
-                    _ => fail(Stage::Reach, reach.explain(&failure), &sampler.rejections),
-                };
+                let mut missed = reach.failed(&failure);
+                let Tried { known, looked_at, .. } = sampler.tried();
+                let no_goal = failure.statistics.goals == 0;
+                if no_goal && missed.interrupt.is_some() {
+                    missed.stage = Stage::Grasps;
+                    missed.message = format!("{looked_at} of {known} looked at");
+                } else if failure.reason == RrtFailureReason::NoGoal {
+                    (missed.stage, missed.message) = match &carries.last {
+                        Some(message) => (Stage::Carry, message.clone()),
+                        None => (Stage::Grasps, format!("none of {known} passes all tests")),
+                    };
+                }
+                return Err(carries.conclude(missed, &sampler));
             }
         };
         let pick = sampler.found[solution.goal].clone();
         let grasp = &set.grasps[pick.grasp];
-        match plan_carry(
+        let carried = plan_carry(
             cx,
             scene,
             q,
@@ -206,24 +197,69 @@ fn plan_goal(
             budget,
             &mut rng,
             observer,
-        ) {
+        );
+        match carried {
             Ok((carry_path, placing)) => {
                 let reach_path = reach.smoothed(solution.path, budget, &mut rng);
                 let rejections = sampler.rejections.clone();
                 let motions = Motions { reach: reach_path, pick, carry: carry_path, placing };
                 return Ok(motions.into_segments(cx, scene, q, grasp, rejections));
             }
-            Err(Miss::Failed(failure)) => {
-                carry_failures.merge(&failure.rejections);
-                carry_failures.add_because(Filter::Path, failure.message.clone());
-                last = Some(failure.message);
+            Err(missed) if missed.interrupt.is_some() => return Err(carries.conclude(missed, &sampler)),
+            Err(missed) => {
+                carries.add(missed);
                 sampler.drop_grasp(pick.grasp);
             }
-            Err(interrupted) => return Err(interrupted),
         }
     }
-    sampler.rejections.merge(&carry_failures);
-    fail(Stage::Carry, last.unwrap_or_default(), &sampler.rejections)
+    let mut missed = GoalFailure::new(cx.object_name(), Stage::Carry);
+    missed.message = carries.last.clone().unwrap_or_default();
+    Err(carries.conclude(missed, &sampler))
+}
+
+/// The free motions with the object that were not found, each with another grasp.
+#[derive(Default)]
+struct Carries {
+    rejections: Rejections,
+    nearest: Option<Nearest>,
+    /// What ended the last one.
+    last: Option<String>,
+}
+
+impl Carries {
+    fn add(&mut self, missed: Box<GoalFailure>) {
+        self.rejections.merge(&missed.rejections);
+        self.rejections.add(Filter::Path);
+        self.nearest = nearer(self.nearest, missed.nearest);
+        self.last = Some(missed.message);
+    }
+
+    /// The failure that ends planning for the goal, with the counts of everything before it.
+    fn conclude(&self, mut missed: Box<GoalFailure>, sampler: &PickSampler<'_, '_>) -> Box<GoalFailure> {
+        missed.tried = sampler.tried();
+        missed.rejections.merge(&sampler.rejections);
+        missed.rejections.merge(&self.rejections);
+        missed.nearest = nearer(missed.nearest, self.nearest);
+        missed
+    }
+}
+
+fn nearer(a: Option<Nearest>, b: Option<Nearest>) -> Option<Nearest> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if b.distance < a.distance { b } else { a }),
+        (a, b) => a.or(b),
+    }
+}
+
+/// Whether the object could be lifted at all: nothing else overlaps it where it stands.
+fn stands_free(cx: &GoalContext<'_>, scene: &Scene) -> Result<(), Box<GoalFailure>> {
+    let world_from_object = *scene.world_from_body(cx.body());
+    scene.body_against_bodies(cx.body(), world_from_object, cx.sink()).map_err(|touch| {
+        let mut failure = GoalFailure::new(cx.object_name(), Stage::Start);
+        failure.message = "it overlaps with something where it stands".into();
+        failure.rejections.add_because(Filter::Standing, cause(scene, touch.into()));
+        failure
+    })
 }
 
 /// Free motion with the object from the end of the lift to the start of a lowering, smoothed.
@@ -238,7 +274,7 @@ fn plan_carry(
     budget: &Budget<'_>,
     rng: &mut robotc_core::rng::Rng,
     observer: &mut dyn Observer,
-) -> Result<(Vec<Vec<f64>>, Placing), Miss> {
+) -> Result<(Vec<Vec<f64>>, Placing), Box<GoalFailure>> {
     let from = &pick.lift[pick.lift.len() - 1];
     let constraint = keep_upright.map(|tilt| upright(cx, grasp, tilt));
     let constraint = constraint.as_ref().map(|u| u as &dyn Constraint);
@@ -263,21 +299,10 @@ fn plan_carry(
             Ok((path, placings.found.swap_remove(solution.goal)))
         }
         Err(failure) => {
-            interrupted(&failure)?;
-            Err(Miss::Failed(Box::new(GoalFailure {
-                object: cx.object_name().to_owned(),
-                stage: Stage::Carry,
-                message: carry.explain(&failure),
-                rejections,
-            })))
+            let mut missed = carry.failed(&failure);
+            missed.rejections.merge(&rejections);
+            Err(missed)
         }
-    }
-}
-
-fn interrupted(failure: &RrtFailure) -> Result<(), Miss> {
-    match failure.reason {
-        RrtFailureReason::Interrupted(interrupt) => Err(Miss::Interrupted(interrupt)),
-        _ => Ok(()),
     }
 }
 
@@ -337,18 +362,28 @@ impl<'c> FreeMotion<'c, '_> {
         smooth(&mut self.checker(), path, &self.cx.options.smoothers, budget, rng)
     }
 
-    /// The failure with the obstructions that stopped most edges.
-    fn explain(&self, failure: &RrtFailure) -> String {
-        let checker = self.checker();
-        if let RrtFailureReason::Start(by) = failure.reason {
-            return format!("the start is not free: {}", checker.describe(by));
+    /// The failure with what stopped the edges, and how near it came.
+    fn failed(&self, failure: &RrtFailure) -> Box<GoalFailure> {
+        let stage = if self.kind == SegmentKind::Reach { Stage::Reach } else { Stage::Carry };
+        let mut missed = GoalFailure::new(self.cx.object_name(), stage);
+        let done = &failure.statistics;
+        missed.message = match failure.reason {
+            RrtFailureReason::Interrupted(_) => {
+                format!("{} iterations towards {} goals", done.iterations, done.goals)
+            }
+            RrtFailureReason::Start(by) => format!("the start is not free: {}", cause(self.scene, by)),
+            _ => failure.to_string(),
+        };
+        if let RrtFailureReason::Interrupted(interrupt) = failure.reason {
+            missed.interrupt = Some(interrupt);
         }
-        let mut blocked: Vec<(Obstruction, u32)> =
-            failure.statistics.blocked.iter().map(|(&by, &n)| (by, n)).collect();
-        blocked.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));
-        let named: Vec<String> =
-            blocked.iter().take(3).map(|(by, n)| format!("{} {n} times", checker.describe(*by))).collect();
-        if named.is_empty() { failure.to_string() } else { format!("{failure}; {}", named.join(", ")) }
+        missed.rejections.edges = done.blocked.iter().map(|(&by, &n)| (cause(self.scene, by), n)).collect();
+        missed.nearest = done.nearest.as_ref().map(|gap| {
+            let arm = self.cx.problem.arm;
+            let apart = arm.world_from_tool(&gap.from_start).inv_mul(&arm.world_from_tool(&gap.from_goal));
+            Nearest { distance: apart.translation.vector.norm(), angle: apart.rotation.angle() }
+        });
+        missed
     }
 }
 
@@ -373,7 +408,15 @@ impl Motions {
         let robot = cx.robot();
         let gripper = cx.gripper();
         let grip = cx.grip(&grasp.object_from_tool);
-        let held = Held { object: cx.object, link: grip.link, link_from_object: grip.link_from_body };
+        let mut at_grasp = cx.with_fingers(q, &grasp.closed);
+        at_grasp.set(cx.problem.arm.dofs(), &pick.lift[0]);
+        let gap = cx.options.fine_margin();
+        let held = Held {
+            object: cx.object,
+            link: grip.link,
+            link_from_object: grip.link_from_body,
+            touching: scene.links_touching(&at_grasp, cx.gripper_links, cx.body(), gap),
+        };
         let now = q.select(&gripper.dofs);
         let preshape = &gripper.preshapes[grasp.preshape].values;
         let world_from_object: Pose = placing.world_from_object;

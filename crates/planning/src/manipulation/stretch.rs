@@ -4,12 +4,22 @@ use nalgebra::Vector3;
 use robotc_core::{Configuration, Pose};
 
 use super::problem::GoalContext;
+use super::rejections::Cause;
 use crate::cartesian::{LineObstacle, cartesian_line};
-use crate::edge::{EdgeChecker, walk_edge};
+use crate::edge::{EdgeChecker, Obstruction, walk_edge};
 use crate::scene::{RobotChecker, Rules, Scene};
 
-/// Why a straight motion does not work, in words.
-pub(super) type Reason = String;
+/// What an obstruction is, by name.
+pub(super) fn cause(scene: &Scene, by: Obstruction) -> Cause {
+    match by {
+        Obstruction::Bounds => Cause::Bounds,
+        Obstruction::Constraint => Cause::Constraint,
+        Obstruction::Contact(_) => {
+            let [one, other] = scene.names(by).unwrap_or_default().map(str::to_owned);
+            Cause::Touch { one, other }
+        }
+    }
+}
 
 /// A checker of arm motions with these rules, at the fine resolution.
 pub(super) fn fine_checker<'a>(
@@ -22,9 +32,9 @@ pub(super) fn fine_checker<'a>(
     RobotChecker::new(scene, arm.space(), arm.dofs(), q, rules, cx.options.fine_resolution)
 }
 
-/// The obstruction in words, if the state is not free.
-pub(super) fn state_is_free(checker: &mut RobotChecker<'_>, q: &[f64]) -> Result<(), Reason> {
-    checker.state(q).map(|_| ()).map_err(|by| checker.describe(by))
+/// Whether the arm is free at `q`.
+pub(super) fn state_is_free(checker: &mut RobotChecker<'_>, q: &[f64]) -> Result<(), Cause> {
+    checker.state(q).map(|_| ()).map_err(|by| cause(checker.scene(), by))
 }
 
 /// Moves the tool from the configuration `from` (taken to be valid under `rules`) by `offset`, and checks that the end
@@ -37,15 +47,15 @@ pub(super) fn straight(
     offset: &Vector3<f64>,
     rules: Rules,
     free: Rules,
-) -> Result<Vec<Vec<f64>>, Reason> {
+) -> Result<Vec<Vec<f64>>, Cause> {
     let mut checker = fine_checker(cx, scene, q, rules);
     let mut goal: Pose = cx.problem.arm.world_from_tool(from);
     goal.translation.vector += offset;
     let path =
         cartesian_line(cx.problem.arm, &mut checker, from, &goal, &cx.options.line).map_err(|failure| {
             match failure.obstacle {
-                LineObstacle::Blocked(by) => checker.describe(by),
-                other => other.to_string(),
+                LineObstacle::Blocked(by) => cause(scene, by),
+                other => Cause::Line(other),
             }
         })?;
     state_is_free(&mut fine_checker(cx, scene, q, free), &path[path.len() - 1])?;
@@ -60,7 +70,7 @@ pub(super) fn back_off(
     q: &Configuration,
     from: &[f64],
     direction: &Vector3<f64>,
-) -> Result<Vec<Vec<f64>>, Reason> {
+) -> Result<Vec<Vec<f64>>, Cause> {
     let (contact, approach) = (cx.options.contact, cx.options.approach);
     let clear = Rules { target: None, ..cx.touching() };
     let mut path = straight(cx, scene, q, from, &(direction * contact), cx.touching(), clear.clone())?;
@@ -77,17 +87,13 @@ pub(super) fn raise(
     q: &Configuration,
     from: &[f64],
     rules: &Rules,
-) -> Result<Vec<Vec<f64>>, Reason> {
+) -> Result<Vec<Vec<f64>>, Cause> {
     let free = cx.free(rules.held.clone());
-    let mut reason = String::new();
-    for factor in [1.0, 0.5, 0.25] {
+    let up = |factor: f64| {
         let offset = Vector3::z() * (factor * cx.options.lift);
-        match straight(cx, scene, q, from, &offset, rules.clone(), free.clone()) {
-            Ok(path) => return Ok(path),
-            Err(because) => reason = because,
-        }
-    }
-    Err(reason)
+        straight(cx, scene, q, from, &offset, rules.clone(), free.clone())
+    };
+    up(1.0).or_else(|_| up(0.5)).or_else(|_| up(0.25))
 }
 
 /// Whether the fingers can move between these positions with the arm standing at `arm_values`.
@@ -99,10 +105,10 @@ pub(super) fn fingers_move(
     from: &[f64],
     to: &[f64],
     rules: Rules,
-) -> Result<(), Reason> {
+) -> Result<(), Cause> {
     let mut q = cx.with_fingers(q, from);
     q.set(cx.problem.arm.dofs(), arm_values);
     let dofs = &cx.gripper().dofs;
     let mut checker = RobotChecker::new(scene, cx.finger_space, dofs, &q, rules, cx.options.fine_resolution);
-    walk_edge(&mut checker, from, to).map_err(|blocked| checker.describe(blocked.by))
+    walk_edge(&mut checker, from, to).map_err(|blocked| cause(scene, blocked.by))
 }

@@ -13,8 +13,9 @@ use robotc_core::{Kinematics, LinkIdx, Pose, Seed, TypedVec};
 use super::*;
 use crate::arm::ArmModel;
 use crate::budget::{Budget, Interrupt};
+use crate::edge::{EdgeChecker, walk_edge};
 use crate::grasp::{Grasp, GraspSet};
-use crate::scene::Scene;
+use crate::scene::{RobotChecker, Rules, Scene};
 use crate::testbed;
 
 /// Top of the table.
@@ -113,20 +114,38 @@ fn place(object: usize, [x, y]: [f64; 2], any_yaw: bool, keep_upright: Option<f6
     Goal::Place { object, destination: Destination::Pose { world_from_object, any_yaw }, keep_upright }
 }
 
-fn run(bench: &Bench, seed: u64, budget: &Budget<'_>) -> Result<Plan, PlanFailure> {
-    let grasps: Vec<&GraspSet> = bench.task.objects.iter().map(|_| &bench.grasps).collect();
-    let problem = Manipulation {
+fn problem<'a>(bench: &'a Bench, grasps: &'a [&'a GraspSet]) -> Manipulation<'a> {
+    Manipulation {
         task: &bench.task,
         kinematics: &bench.kinematics,
         arm: &bench.arm,
         scene: &bench.scene,
-        grasps: &grasps,
+        grasps,
+        reachability: None,
         start: &bench.task.start,
-    };
-    let options = ManipulationOptions::default();
-    let plan = pick_and_place(&problem, &options, budget, Seed::new(seed), &mut ())?;
-    certify(&problem, &options, &plan, 0.002).unwrap_or_else(|e| panic!("{e}"));
+    }
+}
+
+fn run(bench: &Bench, seed: u64, budget: &Budget<'_>) -> Result<Plan, PlanFailure> {
+    run_with(bench, &options(bench), seed, budget)
+}
+
+fn run_with(
+    bench: &Bench,
+    options: &ManipulationOptions,
+    seed: u64,
+    budget: &Budget<'_>,
+) -> Result<Plan, PlanFailure> {
+    let grasps: Vec<&GraspSet> = bench.task.objects.iter().map(|_| &bench.grasps).collect();
+    let problem = problem(bench, &grasps);
+    let plan = pick_and_place(&problem, options, budget, Seed::new(seed), &mut ())?;
+    certify(&problem, options, &plan).unwrap_or_else(|e| panic!("{e}"));
     Ok(plan)
+}
+
+fn options(bench: &Bench) -> ManipulationOptions {
+    let links = gripper_links(&bench.task.robot, 0);
+    ManipulationOptions::new(&Measures::of(&bench.arm, &bench.scene, &bench.task.start, &links))
 }
 
 const WALL: ([f64; 3], [f64; 3]) = ([0.5, 0.03, 0.25], [0.65, 0.0, TABLE + 0.125]);
@@ -226,5 +245,112 @@ fn a_spent_budget_ends_planning() {
     let bench = bench(false, &[([0.6, -0.2], place(0, [0.6, 0.22], true, None))], &[WALL]);
     let spent = || Some(Interrupt::Cancelled);
     let failure = run(&bench, 1, &Budget::new(&spent)).unwrap_err();
-    assert_eq!(failure, PlanFailure::Interrupted(Interrupt::Cancelled));
+    let PlanFailure::Interrupted { interrupt: Interrupt::Cancelled, skipped } = failure else {
+        panic!("{failure}")
+    };
+    assert_eq!(skipped.len(), 1);
+    assert_eq!(skipped[0].reason.tried, Tried { known: 12, looked_at: 0, usable: 0 });
+}
+
+#[test]
+fn running_out_of_time_tells_what_was_tried() {
+    // Every grasp is rejected for the lid, and the time is up after eight questions.
+    let lid = ([0.3, 0.3, 0.02], [0.6, -0.2, TABLE + 0.14]);
+    let lidded = bench(false, &[([0.6, -0.2], place(0, [0.6, 0.22], true, None))], &[lid]);
+    let asked = std::cell::Cell::new(0);
+    let after_a_while = || {
+        asked.set(asked.get() + 1);
+        (asked.get() > 8).then_some(Interrupt::TimeUp)
+    };
+    let failure = run(&lidded, 1, &Budget::new(&after_a_while)).unwrap_err();
+    let PlanFailure::Interrupted { interrupt: Interrupt::TimeUp, skipped } = &failure else {
+        panic!("{failure}")
+    };
+    let GoalFailure { tried, rejections, interrupt, .. } = &skipped[0].reason;
+    assert_eq!(*interrupt, Some(Interrupt::TimeUp));
+    assert!(tried.known == 12 && (1..12).contains(&tried.looked_at), "{tried:?}");
+    assert!(rejections.contacts().keys().any(|(_, other)| *other == "wall1"), "{failure}");
+    let said = failure.to_string();
+    assert!(
+        said.starts_with("no plan was found: the time limit was reached while looking for a grasp of box0: "),
+        "{said}"
+    );
+    assert!(said.contains("touches wall1"), "{said}");
+}
+
+#[test]
+fn a_search_without_a_way_tells_how_near_it_came() {
+    // A wall between object and goal, and a ceiling over both.
+    let walls = [([1.4, 0.02, 1.2], [0.85, 0.0, TABLE + 0.6]), ([1.2, 1.2, 0.02], [0.0, 0.0, 1.1])];
+    let mut split = bench(false, &[([0.6, -0.25], place(0, [0.6, 0.25], true, None))], &walls);
+    split.task.start.set(&split.arm.dofs()[..1], &[-0.5]);
+    let problem_options = ManipulationOptions {
+        rrt: crate::rrt::RrtOptions { max_iterations: 60, ..Default::default() },
+        attempts: 2,
+        ..options(&split)
+    };
+    let failure = run_with(&split, &problem_options, 1, &Budget::unlimited()).unwrap_err();
+    let PlanFailure::NoGoal(skipped) = &failure else { panic!("{failure}") };
+    let GoalFailure { stage, tried, rejections, nearest, .. } = &skipped[0].reason;
+    assert_eq!(*stage, Stage::Carry, "{failure}");
+    assert!(tried.usable >= 2 && rejections.counts[&Filter::Path] == 2, "{failure}");
+    assert!(rejections.edges.keys().any(|cause| cause.to_string().ends_with("touches wall1")), "{failure}");
+    let nearest = nearest.expect("a search was made");
+    assert!(nearest.distance > 0.02 && nearest.distance < 1.0, "{failure}");
+}
+
+#[test]
+fn an_object_in_a_wall_is_refused_by_name() {
+    let wall = ([0.1, 0.1, 0.1], [0.6, -0.26, TABLE + 0.05]);
+    let stuck = bench(false, &[([0.6, -0.2], place(0, [0.6, 0.22], true, None))], &[wall]);
+    let failure = run(&stuck, 1, &Budget::unlimited()).unwrap_err().to_string();
+    assert!(failure.starts_with("box0 cannot be picked up"), "{failure}");
+    assert!(failure.contains("box0 touches wall1"), "{failure}");
+}
+
+#[test]
+fn what_the_planner_takes_for_free_near_objects_is_free_at_a_finer_look() {
+    // Motions of the arm past a small plate, at all distances from grazing to clear of it.
+    let mut rng = Seed::new(11).rng();
+    let (mut free, mut missed_without_margin) = (0, 0);
+    for _ in 0..300 {
+        let from: Vec<f64> = testbed::REST.iter().map(|x| x + rng.range(-0.4, 0.4)).collect();
+        let to: Vec<f64> = from.iter().map(|x| x + rng.range(-0.15, 0.15)).collect();
+        let middle: Vec<f64> = from.iter().zip(&to).map(|(a, b)| 0.5 * (a + b)).collect();
+        let tool = testbed::arm(false).world_from_tool(&middle).translation.vector;
+        let plate = [0, 1, 2].map(|i| tool[i] + rng.range(-0.09, 0.09));
+        let bench = bench(
+            false,
+            &[([0.4, -0.6], place(0, [0.6, 0.22], true, None))],
+            &[([0.002, 0.06, 0.04], plate)],
+        );
+        let grasps = [&bench.grasps];
+        // Coarse, so that what happens between two looks matters.
+        let options = ManipulationOptions { fine_resolution: 0.03, ..options(&bench) };
+        let links = gripper_links(&bench.task.robot, 0);
+        let fingers = super::problem::finger_space(&bench.task.robot, 0);
+        let cx = super::problem::GoalContext {
+            problem: problem(&bench, &grasps),
+            options: &options,
+            number: 0,
+            object: 0,
+            gripper: 0,
+            gripper_links: &links,
+            finger_space: &fingers,
+        };
+        let is_free = |rules: &Rules, resolution| {
+            let (arm, q) = (&bench.arm, &bench.task.start);
+            let mut checker =
+                RobotChecker::new(&bench.scene, arm.space(), arm.dofs(), q, rules.clone(), resolution);
+            checker.state(&from).is_ok() && walk_edge(&mut checker, &from, &to).is_ok()
+        };
+        let no_margin = Rules { margin: 0.0, ..cx.touching() };
+        let truth = is_free(&no_margin, 1e-4);
+        if is_free(&cx.touching(), options.fine_resolution) {
+            free += 1;
+            assert!(truth, "the plate at {plate:?} is touched");
+        }
+        missed_without_margin += u32::from(!truth && is_free(&no_margin, options.fine_resolution));
+    }
+    assert!(free > 50 && missed_without_margin > 0, "{free} {missed_without_margin}");
 }

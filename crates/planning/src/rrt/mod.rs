@@ -36,8 +36,19 @@ impl Default for RrtOptions {
     }
 }
 
+/// Two states, one of each forest, that a search could not join.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gap {
+    /// Between them, in the metric of the space.
+    pub distance: f64,
+    /// Reached from the start.
+    pub from_start: Vec<f64>,
+    /// Reached from a goal.
+    pub from_goal: Vec<f64>,
+}
+
 /// What a search did.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct RrtStatistics {
     /// Iterations run.
     pub iterations: u32,
@@ -51,6 +62,8 @@ pub struct RrtStatistics {
     pub edges: u32,
     /// How many edges each obstruction stopped.
     pub blocked: BTreeMap<Obstruction, u32>,
+    /// The smallest gap that was left when forests were to be joined.
+    pub nearest: Option<Gap>,
 }
 
 /// A path from start to goal.
@@ -78,7 +91,7 @@ pub enum RrtFailureReason {
 }
 
 /// Why there is no path, and what was tried.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct RrtFailure {
     /// What ended the search.
     pub reason: RrtFailureReason,
@@ -205,8 +218,10 @@ fn search<C: EdgeChecker + ?Sized>(
                     let root = from_goals.push_root(&q, number);
                     // Most problems are easy: try the straight way to each new goal first.
                     let near = from_start.nearest(growth.checker.space(), &q);
-                    if let Reach::There(a) = growth.connect(from_start, near, &q) {
-                        return Ok((a, root));
+                    match growth.connect(from_start, near, &q) {
+                        Reach::There(a) => return Ok((a, root)),
+                        Reach::Short(last) => growth.note_gap(from_start.state(last), &q),
+                        Reach::Stuck => growth.note_gap(from_start.state(near), &q),
                     }
                     break;
                 }
@@ -240,8 +255,15 @@ fn search<C: EdgeChecker + ?Sized>(
         };
         let target = grown.state(node).to_vec();
         let near = other.nearest(growth.checker.space(), &target);
-        if let Reach::There(met) = growth.connect(other, near, &target) {
-            return Ok(if grow_start { (node, met) } else { (met, node) });
+        let last = match growth.connect(other, near, &target) {
+            Reach::There(met) => return Ok(if grow_start { (node, met) } else { (met, node) }),
+            Reach::Short(last) => other.state(last),
+            Reach::Stuck => other.state(near),
+        };
+        if grow_start {
+            growth.note_gap(&target, last);
+        } else {
+            growth.note_gap(last, &target);
         }
     }
     Err(RrtFailureReason::Iterations)
@@ -299,6 +321,15 @@ impl<C: EdgeChecker + ?Sized> Growth<'_, C> {
                 *self.statistics.blocked.entry(by).or_insert(0) += 1;
                 Reach::Stuck
             }
+        }
+    }
+
+    /// Remembers the gap between two states that could not be joined, if it is the smallest.
+    fn note_gap(&mut self, from_start: &[f64], from_goal: &[f64]) {
+        let distance = self.checker.space().distance(from_start, from_goal);
+        if self.statistics.nearest.as_ref().is_none_or(|least| distance < least.distance) {
+            let (from_start, from_goal) = (from_start.to_vec(), from_goal.to_vec());
+            self.statistics.nearest = Some(Gap { distance, from_start, from_goal });
         }
     }
 
@@ -382,6 +413,10 @@ mod tests {
         assert_eq!(closed.reason, RrtFailureReason::Iterations);
         assert!(closed.statistics.blocked.keys().any(|o| matches!(o, Obstruction::Contact(_))));
         assert!(closed.statistics.start_nodes > 10 && closed.statistics.goal_nodes > 10);
+        // The walls of the room are half a unit thick.
+        let nearest = closed.statistics.nearest.unwrap();
+        assert!((0.5..1.5).contains(&nearest.distance), "{nearest:?}");
+        assert!(nearest.from_goal.iter().all(|x| (6.5..=9.5).contains(x)), "{nearest:?}");
 
         let none = run(&mut Toy::room(0.05), &mut FixedGoals::default(), 1).unwrap_err();
         assert_eq!(none.reason, RrtFailureReason::NoGoal);

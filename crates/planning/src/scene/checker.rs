@@ -25,8 +25,8 @@ pub struct RobotChecker<'a> {
     states: u64,
 }
 
-/// Clearance beyond this is not looked for, metres: looking would cost more than it saves.
-const ROOM: f64 = 0.1;
+/// Clearance beyond this many times the resolution is not looked for: looking would cost more than it saves.
+const ROOM: f64 = 10.0;
 
 impl<'a> RobotChecker<'a> {
     /// Motions of `dofs`, the coordinates of `space`, from configuration `q` on; bodies travel no more than
@@ -49,7 +49,7 @@ impl<'a> RobotChecker<'a> {
             resolution,
             rules,
             constraint: None,
-            room: ROOM,
+            room: ROOM * resolution,
             q: q.clone(),
             poses: LinkPoses::default(),
             states: 0,
@@ -70,6 +70,11 @@ impl<'a> RobotChecker<'a> {
     pub fn without_clearance(mut self) -> Self {
         self.room = 0.0;
         self
+    }
+
+    /// The robot and the bodies around it.
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
     }
 
     /// Number of states looked at so far.

@@ -11,10 +11,11 @@ mod shape;
 
 use std::sync::Arc;
 
+use nalgebra::Point3;
 use robotc_core::geom::{ConvexParts, contact, distance, within};
 use robotc_core::ids::Idx;
 use robotc_core::world::World;
-use robotc_core::{BodyIdx, Kinematics, LinkIdx, LinkPoses, Pose, TypedVec};
+use robotc_core::{BodyIdx, Configuration, Kinematics, LinkIdx, LinkPoses, Pose, TypedVec};
 
 pub use checker::RobotChecker;
 pub use mobile::MobileChecker;
@@ -136,14 +137,61 @@ impl Scene {
         scene
     }
 
-    /// A clause that names a touching pair.
-    pub fn describe(&self, obstruction: Obstruction) -> Option<String> {
+    /// The names of a touching pair; `None` when the obstruction is not a contact of this scene.
+    pub fn names(&self, obstruction: Obstruction) -> Option<[&str; 2]> {
         let Obstruction::Contact(code) = obstruction else { return None };
         let name = |n: usize| match n.checked_sub(self.links.len()) {
             None => Some(self.kinematics.model().links()[LinkIdx::new(n)].name.as_str()),
             Some(body) => self.bodies.get(BodyIdx::new(body)).map(|b| &*b.name),
         };
-        Some(format!("{} touches {}", name((code >> 16) as usize)?, name((code & 0xffff) as usize)?))
+        Some([name((code >> 16) as usize)?, name((code & 0xffff) as usize)?])
+    }
+
+    /// A clause that names a touching pair.
+    pub fn describe(&self, obstruction: Obstruction) -> Option<String> {
+        self.names(obstruction).map(|[one, other]| format!("{one} touches {other}"))
+    }
+
+    /// Diagonal of the box around a body, metres.
+    pub fn body_diagonal(&self, body: BodyIdx) -> f64 {
+        self.bodies[body].shape.bounds.diagonal()
+    }
+
+    /// Distance from a point to the farthest point of `links` with the robot at `q`, metres; zero without shape.
+    pub fn farthest(&self, q: &Configuration, links: &[LinkIdx], point_in_world: &Point3<f64>) -> f64 {
+        let mut poses = LinkPoses::default();
+        self.kinematics.link_poses(q, &mut poses);
+        let of_link = |&link: &LinkIdx| {
+            let world_from_link = self.world_from_robot * poses.root_from(link);
+            let point_in_link = world_from_link.inverse() * point_in_world;
+            let points = self.links[link].parts.iter().flat_map(|part| part.part.points());
+            points.map(move |p| (p - point_in_link).norm()).fold(0.0, f64::max)
+        };
+        links.iter().map(of_link).fold(0.0, f64::max)
+    }
+
+    /// Those of `links` that are no farther than `gap` metres from a body with the robot at `q`, in their order.
+    pub fn links_touching(
+        &self,
+        q: &Configuration,
+        links: &[LinkIdx],
+        body: BodyIdx,
+        gap: f64,
+    ) -> Vec<LinkIdx> {
+        let mut poses = LinkPoses::default();
+        self.kinematics.link_poses(q, &mut poses);
+        let body = &self.bodies[body];
+        let touches = |link: &LinkIdx| {
+            let body_from_link = body.body_from_world * self.world_from_robot * poses.root_from(*link);
+            let parts = &self.links[*link].parts;
+            parts.iter().any(|part| {
+                let near = |other: &shape::Part| {
+                    within(&part.part, &body_from_link, &other.part, &Pose::identity(), gap)
+                };
+                body.shape.parts.iter().any(near)
+            })
+        };
+        links.iter().copied().filter(touches).collect()
     }
 
     /// Whether `movers` of a robot at `world_from_robot`, its links at `poses`, collide with other bodies; if not, their

@@ -2,11 +2,14 @@
 //!
 //! [`blend`] makes the path smooth enough to be followed without stopping, [`profile`] finds the fastest speed along
 //! it. The result keeps the limits between its knots too, which [`TimedPath::limit_use`] measures independently.
+//! [`point_to_point()`] motions stop at corners instead, and limit the jerk as well.
 
 mod blend;
+mod point_to_point;
 mod profile;
 mod timed;
 
+pub use point_to_point::point_to_point;
 pub use timed::TimedPath;
 
 use crate::edge::EdgeChecker;
@@ -19,11 +22,26 @@ pub struct MotionLimits {
     pub velocity: Vec<f64>,
     /// Largest acceleration of each coordinate, per second squared; positive.
     pub acceleration: Vec<f64>,
+    /// Largest jerk of each coordinate, per second cubed; positive. Kept by [`TimeLaw::PointToPoint`] alone.
+    pub jerk: Vec<f64>,
+}
+
+/// How a path of straight edges is driven.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum TimeLaw {
+    /// Without stopping: corners are rounded, and the speed is as high as velocity and acceleration limits allow.
+    /// Acceleration may jump.
+    #[default]
+    AlongPath,
+    /// From state to state, at rest at each: on the edges themselves, with limited jerk.
+    PointToPoint,
 }
 
 /// Parameters of the time parameterisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimingOptions {
+    /// How the path is driven.
+    pub law: TimeLaw,
     /// Longest piece cut off on each side of a corner, as a fraction of the diameter of the space. Where a blend is
     /// not free it is halved, and below a thousandth of this the motion stops at the corner instead.
     pub blend: f64,
@@ -33,13 +51,14 @@ pub struct TimingOptions {
 
 impl Default for TimingOptions {
     fn default() -> Self {
-        Self { blend: 0.05, intervals: 160 }
+        Self { law: TimeLaw::default(), blend: 0.05, intervals: 160 }
     }
 }
 
-/// The fastest motion along a valid path of straight edges that `limits` allow, at rest at both ends.
+/// The motion along a valid path of straight edges that is the fastest by its [law](TimeLaw) under `limits`, at rest at
+/// both ends.
 ///
-/// Corners are rounded where `checker` finds the rounding free. Acceleration may jump; velocity does not.
+/// Corners are rounded where the law asks for it and `checker` finds the rounding free.
 pub fn time_path<C: EdgeChecker + ?Sized>(
     checker: &mut C,
     path: &[Vec<f64>],
@@ -51,11 +70,20 @@ pub fn time_path<C: EdgeChecker + ?Sized>(
     drop_repeated(checker.space(), &mut path);
     let Some(first) = path.first() else { return TimedPath::default() };
     let mut timed = TimedPath::resting_at(first);
-    for section in blend::round_corners(checker, &path, options.blend) {
-        let grid = blend::subdivide(&section, options.intervals);
-        timed.append(profile::fastest(&grid, limits));
+    match options.law {
+        TimeLaw::PointToPoint => {
+            for edge in path.windows(2) {
+                timed.append(point_to_point(&edge[0], &edge[1], limits));
+            }
+        }
+        TimeLaw::AlongPath => {
+            for section in blend::round_corners(checker, &path, options.blend) {
+                let grid = blend::subdivide(&section, options.intervals);
+                timed.append(profile::fastest(&grid, limits));
+            }
+            timed.slow_down_to(limits);
+        }
     }
-    timed.slow_down_to(limits);
     timed
 }
 
@@ -82,7 +110,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn limits(v: [f64; 2], a: [f64; 2]) -> MotionLimits {
-        MotionLimits { velocity: v.to_vec(), acceleration: a.to_vec() }
+        MotionLimits { velocity: v.to_vec(), acceleration: a.to_vec(), jerk: vec![10.0; 2] }
     }
 
     fn open() -> Toy {
@@ -121,6 +149,19 @@ mod tests {
             .map(|leg| time_path(&mut open(), leg, &limits, &TimingOptions::default()).duration())
             .sum();
         assert!(timed.duration() < stopping - 0.1, "{} against {stopping}", timed.duration());
+    }
+
+    #[test]
+    fn point_to_point_rests_at_every_corner() {
+        let path = vec![vec![1.0, 1.0], vec![5.0, 1.0], vec![5.0, 1.0], vec![5.0, 5.0]];
+        let limits = limits([2.0; 2], [2.0; 2]);
+        let options = TimingOptions { law: TimeLaw::PointToPoint, ..TimingOptions::default() };
+        let timed = time_path(&mut open(), &path, &limits, &options);
+        let legs = [&path[..2], &path[2..]].map(|leg| point_to_point(&leg[0], &leg[1], &limits).duration());
+        assert!((timed.duration() - legs[0] - legs[1]).abs() < 1e-12);
+        let corner = timed.knots.iter().find(|k| k.positions == path[1]).expect("the corner is a knot");
+        assert_eq!(corner.velocities, [0.0, 0.0]);
+        assert!(timed.limit_use(&limits) <= 1.0 + 1e-9);
     }
 
     #[test]

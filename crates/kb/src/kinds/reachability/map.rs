@@ -8,6 +8,7 @@ use nalgebra::{Translation3, UnitQuaternion, Vector3};
 use robotc_core::Pose;
 use robotc_core::model::{ChainMotion, SerialChain};
 use robotc_core::so3::RotationGrid;
+use robotc_planning::Reachability;
 
 /// Where the cells lie.
 #[derive(Debug, Clone, PartialEq)]
@@ -132,6 +133,18 @@ pub struct ReachabilityMap {
 /// Cells between stored witness positions.
 const BLOCK: usize = 64;
 
+impl Reachability for ReachabilityMap {
+    /// Share of the tries that reach the centre of the pose's cell. Zero as well when the first joint cannot turn the
+    /// witness to the pose's azimuth. A reached centre does not prove the whole cell.
+    fn density(&self, base_from_tip: &Pose) -> f64 {
+        let Some(seen) = self.grid.see(base_from_tip) else { return 0.0 };
+        match self.witness_at(&seen) {
+            Some(_) => f64::from(self.counts[seen.cell]) / f64::from(self.tries),
+            None => 0.0,
+        }
+    }
+}
+
 impl ReachabilityMap {
     /// A map of these cells; `None` when the lengths do not fit together.
     pub fn new(
@@ -158,18 +171,6 @@ impl ReachabilityMap {
             before += block.iter().filter(|c| **c > 0).count() as u32;
         }
         Some(Self { grid, tries, counts, witnesses, variables, first_limits, blocks })
-    }
-
-    /// Share of the tries that reach the centre of the pose's cell: 0 (not reached) to 1. Zero as well when the first
-    /// joint cannot turn the witness to the pose's azimuth.
-    ///
-    /// An estimate for ranking: a reached centre does not prove the whole cell.
-    pub fn density(&self, base_from_tip: &Pose) -> f64 {
-        let Some(seen) = self.grid.see(base_from_tip) else { return 0.0 };
-        match self.witness_at(&seen) {
-            Some(_) => f64::from(self.counts[seen.cell]) / f64::from(self.tries),
-            None => 0.0,
-        }
     }
 
     /// The stored joint vector of a pose's cell, its first joint turned to the pose's azimuth; `None` when the cell is
