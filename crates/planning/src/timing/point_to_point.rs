@@ -107,7 +107,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(200))]
+        #![proptest_config(crate::properties::cases(200))]
         #[test]
         fn finite_differences_keep_all_limits_and_use_one(
             from in prop::array::uniform3(-3.0..3.0f64),
