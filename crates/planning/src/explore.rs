@@ -6,6 +6,7 @@ use std::fmt;
 
 use robotc_core::Seed;
 use robotc_core::rng::Rng;
+use serde::{Deserialize, Serialize};
 
 use crate::budget::{Budget, Interrupt};
 use crate::constraint::Constraint;
@@ -15,7 +16,8 @@ use crate::subspace::Subspace;
 use crate::tree::Tree;
 
 /// Parameters of an exploring search.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct ExploreOptions {
     /// Longest edge, as a fraction of the diameter of the space.
     pub step: f64,

@@ -8,13 +8,15 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use robotc_core::rng::Rng;
+use serde::{Deserialize, Serialize};
 
 use crate::budget::{Budget, Interrupt};
 use crate::constraint::Constraint;
 use crate::edge::{EdgeChecker, Obstruction};
 
 /// Parameters of jittering. Lengths are travel of the fastest point, in the unit of [`EdgeChecker::travel`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct JitterOptions {
     /// Radius of the first ball.
     pub smallest: f64,

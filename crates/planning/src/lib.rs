@@ -16,6 +16,7 @@ pub mod jitter;
 pub mod manipulation;
 pub mod mechanism;
 pub mod placement;
+pub mod problem;
 #[cfg(test)]
 mod properties;
 pub mod reachability;
@@ -42,6 +43,7 @@ pub use goal::{FixedGoals, GoalDraw, GoalSampler};
 pub use grasp::{Contact, Grasp, GraspSet};
 pub use jitter::{JitterFailure, JitterOptions, Jittered, jitter};
 pub use mechanism::{Mechanism, MechanismMotion};
+pub use problem::{PathPlanner, PlanningProblem, Registry, solve};
 pub use reachability::Reachability;
 pub use rrt::{Gap, RrtConnect, RrtFailure, RrtOptions, RrtSolution};
 pub use smooth::{Smoother, smooth};

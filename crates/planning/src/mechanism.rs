@@ -2,9 +2,11 @@
 
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 use robotc_core::Pose;
+use serde::{Deserialize, Serialize};
 
 /// How a mechanism moves along its axis, the z axis of its frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum MechanismMotion {
     /// Turns about z: a door, a lid, a lever. Values are radians.
     Hinge,

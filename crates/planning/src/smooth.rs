@@ -1,13 +1,15 @@
 //! Shorter paths: post-processors that run one after the other.
 
 use robotc_core::rng::Rng;
+use serde::{Deserialize, Serialize};
 
 use crate::budget::Budget;
 use crate::edge::EdgeChecker;
 use crate::space::Space;
 
 /// One pass over a path. Passes keep the ends, never make the path longer, and add only edges that were checked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Smoother {
     /// Leaves out states: from each, goes straight to the farthest later state that can be reached.
     Skip,

@@ -1,6 +1,7 @@
 //! Following the tool's tree from a configuration to a goal (thesis algorithm 3.14).
 
 use robotc_core::rng::Rng;
+use serde::{Deserialize, Serialize};
 
 use super::forward::Forward;
 use super::goal_tree::GoalTree;
@@ -10,7 +11,8 @@ use crate::edge::EdgeChecker;
 use crate::space::Space;
 
 /// Parameters of following.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct FollowOptions {
     /// Steps after which it ends.
     pub steps: u32,

@@ -2,6 +2,7 @@
 //! path planning for redundant manipulators without inverse kinematics", 2007). A baseline.
 
 use robotc_core::rng::Rng;
+use serde::{Deserialize, Serialize};
 
 use super::forward::Forward;
 use super::metric::TreeMetric;
@@ -10,7 +11,8 @@ use crate::budget::Budget;
 use crate::edge::EdgeChecker;
 
 /// Parameters of the search.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct JacobianOptions {
     /// Longest edge of the tree, as a fraction of the diameter of the space.
     pub step: f64,

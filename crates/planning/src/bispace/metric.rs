@@ -2,10 +2,13 @@
 
 use std::f64::consts::PI;
 
+use serde::{Deserialize, Serialize};
+
 use crate::space::Space;
 
 /// How the nearest configuration of the tree is chosen, and how long a step is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum TreeMetric {
     /// The metric of the space.
     Plain,
@@ -15,7 +18,8 @@ pub enum TreeMetric {
 }
 
 /// How likely a new configuration tries to follow the tool's tree.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum FollowProbability {
     /// Always the same, but for dead ends: where following ended before, it is tried less often.
     Constant(f64),

@@ -1,6 +1,7 @@
 //! The search itself (thesis algorithm 3.13).
 
 use robotc_core::rng::Rng;
+use serde::{Deserialize, Serialize};
 
 use super::follow::{FollowOptions, follow};
 use super::forward::Forward;
@@ -14,7 +15,8 @@ use crate::rrt::{RrtConnect, RrtFailureReason, RrtOptions};
 use crate::subspace::Subspace;
 
 /// Parameters of the search.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct BiSpaceOptions {
     /// Extensions of the tree of configurations in a round (J).
     pub forward: u32,

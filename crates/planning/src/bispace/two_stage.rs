@@ -2,6 +2,7 @@
 
 use robotc_core::Seed;
 use robotc_core::rng::Rng;
+use serde::{Deserialize, Serialize};
 
 use super::workspace::{ToolFailure, ToolFailureReason, ToolSolution, ToolStatistics, Workspace};
 use crate::budget::{Budget, Interrupt};
@@ -10,7 +11,8 @@ use crate::goal::{FixedGoals, GoalDraw, GoalSampler};
 use crate::rrt::{RrtConnect, RrtFailureReason, RrtOptions};
 
 /// Parameters of the two stages.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct TwoStageOptions {
     /// Goal configurations to find before the search begins; it uses all of them.
     pub goals: u32,

@@ -2,6 +2,7 @@
 
 use robotc_core::Pose;
 use robotc_core::ik::IkSolutions;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::task::{ArticulatedTask, CagedState};
@@ -19,7 +20,8 @@ pub struct CageGrasp {
 }
 
 /// Parameters of a caging task.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct CagedObjectOptions {
     /// Farthest two grasps are apart between which the gripper changes in one motion, metres.
     pub shift: f64,

@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use robotc_core::rng::Rng;
+use serde::{Deserialize, Serialize};
 
 use super::task::{
     ArticulatedTask, CagedState, CagingFailure, CagingFailureReason, CagingSolution, CagingStatistics, joined,
@@ -12,7 +13,8 @@ use super::task::{
 use crate::budget::Budget;
 
 /// Parameters of the search.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct RandomizedOptions {
     /// New states drawn from a state before the next best one is looked at.
     pub children: u32,

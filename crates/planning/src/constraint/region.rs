@@ -4,13 +4,15 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3, Vector6};
 use robotc_core::Pose;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::Constraint;
 use crate::arm::ArmModel;
 
 /// How far a frame may be outside of its bounds.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct RegionTolerance {
     /// For x, y and z, metres.
     pub linear: f64,

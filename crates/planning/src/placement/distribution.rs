@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::{UnitVector3, Vector3};
 use robotc_core::Pose;
 use robotc_core::rng::Rng;
+use serde::{Deserialize, Serialize};
 
 use crate::arm::ArmModel;
 
@@ -40,7 +41,8 @@ impl BaseDistribution for UniformBases {
 }
 
 /// Parameters of [`InverseSamples`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct InverseSamplesOptions {
     /// Configurations drawn of each arm.
     pub count: usize,

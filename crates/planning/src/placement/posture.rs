@@ -3,6 +3,7 @@
 use nalgebra::Point3;
 use robotc_core::rng::Rng;
 use robotc_core::{Configuration, DofIdx, Kinematics, LinkIdx, Seed};
+use serde::{Deserialize, Serialize};
 
 use crate::budget::{Budget, Interrupt};
 use crate::edge::EdgeChecker;
@@ -65,7 +66,8 @@ impl PrismBodies<'_> {
 }
 
 /// Parameters of [`NavigationPosture`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct PostureOptions {
     /// Radius of the first ball around the preset posture, in the unit of [`EdgeChecker::travel`].
     pub smallest: f64,

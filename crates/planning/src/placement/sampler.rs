@@ -5,6 +5,7 @@ use std::fmt;
 
 use robotc_core::rng::Rng;
 use robotc_core::{Pose, Seed};
+use serde::{Deserialize, Serialize};
 
 use super::distribution::BaseDistribution;
 use crate::budget::{Budget, Interrupt};
@@ -36,7 +37,8 @@ pub trait PlacementProblem {
 }
 
 /// Parameters of the sampling.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct PlacementOptions {
     /// Places tried for each draw; what is not found by then is pending.
     pub places: u32,

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use robotc_core::rng::Rng;
+use serde::{Deserialize, Serialize};
 
 use crate::budget::{Budget, Interrupt};
 use crate::constraint::Constraint;
@@ -15,7 +16,8 @@ use crate::goal::{GoalDraw, GoalSampler};
 use crate::tree::Tree;
 
 /// Parameters of a search.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct RrtOptions {
     /// Longest edge, as a fraction of the diameter of the space.
     pub step: f64,
