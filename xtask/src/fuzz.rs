@@ -139,7 +139,8 @@ impl Campaign {
             self.read(&real)?;
         }
         let (time, longest) = (format!("-max_total_time={seconds}"), format!("-max_len={LONGEST}"));
-        let Progress { executions, coverage } = self.fuzzer(&[self.work.clone()], &[&time, &longest])?;
+        let Progress { executions, coverage } =
+            self.fuzzer(std::slice::from_ref(&self.work), &[&time, &longest])?;
         let minimal = self.work.with_file_name("minimal");
         std::fs::create_dir_all(&minimal)?;
         self.fuzzer(&[minimal.clone(), self.work.clone()], &["-merge=1", &longest])?;

@@ -62,7 +62,8 @@ fn main() -> anyhow::Result<()> {
     lock.set("specs/mug.task.toml", Locked::of(&report.knowledge));
     write("lock", lock.to_text().as_bytes())?;
     for kind in kinds::ALL {
-        println!("{}: {} seeds", kind.info().name, count.get(kind.info().name).copied().unwrap_or(0));
+        let name = kind.info().name;
+        ensure!(count.contains_key(name), "the task has no {name} that is short enough for a seed");
     }
     Ok(())
 }

@@ -221,8 +221,7 @@ impl Stored {
             })
             .collect();
         let rotation = UnitQuaternion::new_unchecked(Quaternion::from(self.rotation));
-        // So that a norm which is not a number is refused, too.
-        if !((rotation.norm() - 1.0).abs() < 1e-9) {
+        if !rotation.norm().is_finite() || (rotation.norm() - 1.0).abs() > 1e-9 {
             return Err(DecodeError::new("a rotation is not of unit length"));
         }
         let numbers = [self.standoff, self.epsilon, self.score];
