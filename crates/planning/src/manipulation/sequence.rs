@@ -207,7 +207,7 @@ fn plan_goal(
             }
             Err(missed) if missed.interrupt.is_some() => return Err(carries.conclude(missed, &sampler)),
             Err(missed) => {
-                carries.add(missed);
+                carries.add(*missed);
                 sampler.drop_grasp(pick.grasp);
             }
         }
@@ -227,7 +227,7 @@ struct Carries {
 }
 
 impl Carries {
-    fn add(&mut self, missed: Box<GoalFailure>) {
+    fn add(&mut self, missed: GoalFailure) {
         self.rejections.merge(&missed.rejections);
         self.rejections.add(Filter::Path);
         self.nearest = nearer(self.nearest, missed.nearest);
