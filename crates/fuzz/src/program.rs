@@ -7,7 +7,7 @@ use robotc_ikgen::backend::{RustOptions, rust_source};
 use robotc_ikgen::ir::Program;
 use robotc_ikgen::kernel::chain::Frame;
 use robotc_ikgen::passes;
-use robotc_ikgen::run::{Bytecode, TrueChain, interpreter};
+use robotc_ikgen::run::{Bytecode, Candidate, TrueChain, interpreter};
 
 /// Candidates that are compared between the engines.
 const MOST_CANDIDATES: usize = 1000;
@@ -28,7 +28,10 @@ pub(crate) fn program(bytes: &[u8]) {
         assert!(!rust_source(program, &chain, &RustOptions::default()).is_empty());
         let Ok(code) = Bytecode::new(program) else { continue };
         let free = &FREE[..program.free.len()];
-        let by_code = candidates(|mut offer| code.run(&POSE, free, program.slack, &mut offer));
+        let by_code = candidates(|offer| {
+            let steps = |candidate: &Candidate| offer(&candidate.steps[..program.variables]);
+            code.run(&POSE, free, program.slack, &mut { steps })
+        });
         let by_text =
             candidates(|mut offer| interpreter::run(program, &POSE, free, program.slack, &mut offer));
         assert_eq!(by_code, by_text, "the engines differ");

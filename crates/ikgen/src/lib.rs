@@ -29,7 +29,7 @@
 //! ```
 //!
 //! **Expressions** are pure: `rIJ` (rotation of the pose, row I, column J), `px py pz` (its position), `freeK`, numbers, bound names,
-//! `+ - * /`, `sqrt` (0 for negative arguments), `sin`, `cos`, `min`, `max`. They form a hash-consed graph: what is written
+//! `+ - * /`, `sqrt` (0 for negative arguments), `sin`, `cos`, `angle_of`, `min`, `max`. They form a hash-consed graph: what is written
 //! twice is one node.
 //!
 //! **Statements** are structured; a name is visible in the rest of its block and in nested blocks.
@@ -39,6 +39,7 @@
 //! | `let x = e` | a name for a value |
 //! | `align(x, y) -> c s { }` | for the angle along (x, y) |
 //! | `mirror(x, y) -> c s { }` | for the two angles along (x, y) and (x, -y) |
+//! | `half(x, y) -> c s { }` | for the one of them whose sine is positive |
 //! | `circle(a, b, d) -> c s { }` | for each angle with `a cos + b sin = d` |
 //! | `conic(a, b, c, d, e, f) -> c s { }` | for each angle with `a cos^2 + b cos sin + c sin^2 + d cos + e sin + f = 0` |
 //! | `six(...) -> c s c s c s c s c s c s { }` | for each way in which six turning joints close a loop; [`kernel::six`] says how |
@@ -69,7 +70,6 @@ pub mod check;
 pub mod generate;
 pub mod ir;
 pub mod kernel;
-#[cfg(feature = "generate")]
 pub mod passes;
 #[cfg(feature = "generate")]
 pub mod report;

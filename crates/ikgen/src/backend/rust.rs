@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use crate::ir::{Block, Program, Stmt, Value};
+use super::CAPACITY;
+use crate::ir::{Block, Expr, Program, RootKind, Stmt, Value};
 use crate::kernel::chain::Frame;
-use crate::kernel::{CORE_SQRT, PLATFORM_SQRT, SIX_SOURCES, SOURCES};
+use crate::kernel::{CONIC_SOURCE, CORE_SQRT, PLATFORM_SQRT, SIX_SOURCES, SOURCES};
 use crate::run::TrueChain;
 
 /// Choices of the Rust back end.
@@ -14,19 +15,56 @@ pub struct RustOptions {
     pub std: bool,
 }
 
-/// Most solutions a generated solver returns.
-const CAPACITY: usize = 16;
-
 /// The source file. It may be a module of any crate, or a crate of its own.
 pub fn rust_source(program: &Program, chain: &TrueChain, options: &RustOptions) -> String {
+    let program = &crate::passes::prepare(program, chain);
     let mut out = String::new();
     header(program, &mut out);
     constants(program, chain, &mut out);
     out += API;
     solve(program, &mut out);
     kernel(program, options, &mut out);
+    out += TESTS;
     out
 }
+
+/// The tests that a file carries.
+const TESTS: &str = "
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every pose of a joint vector is solved, all answers reach their pose, and the joint vector is among them: of a hundred at most
+    /// one, near a singular pose, may be found by other answers alone.
+    #[test]
+    fn solves_the_poses_of_joint_vectors() {
+        let mut bits = 88172645463325252u64;
+        let mut found = Solutions::new();
+        let mut again = 0;
+        for _ in 0..300 {
+            let values: [f64; VARIABLES] = core::array::from_fn(|v| {
+                bits ^= bits << 13;
+                bits ^= bits >> 7;
+                bits ^= bits << 17;
+                let unit = (bits >> 11) as f64 / (1u64 << 53) as f64;
+                (2.0 * unit - 1.0) * if SLIDES[v] { 1.0 } else { 3.1 }
+            });
+            let pose = forward(&values);
+            solve(&pose, &FREE.map(|v| values[v]), &mut found);
+            let near = |other: &[f64; VARIABLES]| {
+                (0..VARIABLES).all(|v| {
+                    let gap = (values[v] - other[v]).abs();
+                    gap < 1e-6 || (!SLIDES[v] && (gap - core::f64::consts::TAU).abs() < 1e-6)
+                })
+            };
+            assert!(!found.as_slice().is_empty());
+            again += usize::from(found.as_slice().iter().any(near));
+            assert!(found.as_slice().iter().all(|values| forward(values).distance(&pose) < 1e-9));
+        }
+        assert!(again >= 297);
+    }
+}
+";
 
 fn header(program: &Program, out: &mut String) {
     let _ = writeln!(
@@ -48,10 +86,13 @@ fn header(program: &Program, out: &mut String) {
     }
     out.push_str("\n#![allow(dead_code, unused_imports, unused_variables, clippy::all)]\n\n");
     out.push_str(
-        "pub use chain::{Frame, Link};\nuse candidate::{Arm, MOST_MISSES, WIDER};\n\
-         use math::{cos_sin, sqrt};\nuse roots::*;\n",
+        "pub use chain::{Frame, Link};\nuse candidate::{Arm, MOST_MISSES, WIDER, is_exact};\n\
+         use math::{angle_of, cos_sin, mirrored, opposite, sqrt};\nuse roots::*;\n",
     );
-    out.push_str(if uses_six(&program.body) { "use six::six_of;\n\n" } else { "\n" });
+    for (kind, line) in [(RootKind::Conic, "use conic::conic;\n"), (RootKind::Six, "use six::six_of;\n")] {
+        out.push_str(if program.uses(kind) { line } else { "" });
+    }
+    out.push('\n');
 }
 
 fn constants(program: &Program, chain: &TrueChain, out: &mut String) {
@@ -125,7 +166,7 @@ pub fn forward(values: &[f64; VARIABLES]) -> Frame {
 
 /// All solutions for a pose of the chain as described, given the values of the variables in [`FREE`].
 pub fn solve(base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {
-    solve_on(&DESCRIBED, base_from_tip, free, out);
+    solve_with(&DESCRIBED, true, base_from_tip, free, out);
 }
 
 fn arm(chain: &Chain) -> Arm<'_> {
@@ -136,20 +177,21 @@ fn arm(chain: &Chain) -> Arm<'_> {
 struct Sink<'a> {
     arm: Arm<'a>,
     base_from_tip: &'a Frame,
-    free: &'a [f64; FREE.len()],
     out: &'a mut Solutions,
     accepted: usize,
     misses: usize,
+    /// The chain is the described one, for which candidates come with their misses.
+    described: bool,
 }
 
 impl Sink<'_> {
-    /// Keeps a candidate if it is right and new.
-    fn offer(&mut self, steps: [[f64; 2]; VARIABLES]) {
-        let mut values = [0.0; VARIABLES];
-        for (variable, value) in FREE.iter().zip(self.free) {
-            values[*variable] = *value;
+    /// Keeps a candidate if it is right and new: the step of each variable, its value, and the squares of how far the
+    /// described chain is from the pose, rotation and position.
+    fn offer(&mut self, steps: [[f64; 2]; VARIABLES], mut values: [f64; VARIABLES], misses: [f64; 2]) {
+        if self.misses >= MOST_MISSES {
+            return;
         }
-        if self.misses >= MOST_MISSES || !self.arm.settle(self.base_from_tip, &steps, &mut values) {
+        if !(self.described && is_exact(misses)) && !self.arm.settle(self.base_from_tip, &steps, &mut values) {
             self.misses += 1;
             return;
         }
@@ -184,8 +226,10 @@ fn solve(program: &Program, out: &mut String) {
     out.push_str(
         "/// As [`solve`], for a chain whose constants are near those of the described one.\n\
          pub fn solve_on(chain: &Chain, base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {\n    \
+         solve_with(chain, false, base_from_tip, free, out);\n}\n\n\
+         fn solve_with(chain: &Chain, described: bool, base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {\n    \
          out.len = 0;\n    \
-         let mut sink = Sink { arm: arm(chain), base_from_tip, free, out, accepted: 0, misses: 0 };\n    \
+         let mut sink = Sink { arm: arm(chain), base_from_tip, out, accepted: 0, misses: 0, described };\n    \
          attempt(base_from_tip, free, SLACK, &mut sink);\n    \
          for slack in WIDER {\n        \
          if sink.accepted == 0 && slack > SLACK {\n            sink.misses = 0;\n            \
@@ -216,9 +260,9 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                 *loops += 1;
                 let k = *loops;
                 let args: Vec<String> = match kind {
-                    crate::ir::RootKind::Conic | crate::ir::RootKind::Six => {
+                    RootKind::Conic | RootKind::Six => {
                         let all: Vec<String> = args.iter().map(|e| p.expr_text(*e)).collect();
-                        let by = if *kind == crate::ir::RootKind::Six { "&" } else { "" };
+                        let by = if *kind == RootKind::Six { "&" } else { "" };
                         vec![format!("{by}[{}]", all.join(", "))]
                     }
                     _ => args.iter().map(|e| p.expr_text(*e)).collect(),
@@ -227,7 +271,7 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                 if names.len() < 2 {
                     names.push("_");
                 }
-                let six = *kind == crate::ir::RootKind::Six;
+                let six = *kind == RootKind::Six;
                 let call = if six { "six_of" } else { kind.word() };
                 let _ = writeln!(out, "{pad}let roots{k} = {call}({}, slack);", args.join(", "));
                 let _ = writeln!(out, "{pad}let before{k} = sink.accepted;");
@@ -247,11 +291,17 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                 let _ = writeln!(out, "{pad}}}");
             }
             Stmt::IfZero { value, tolerance, then, otherwise } => {
-                let _ = writeln!(out, "{pad}if ({}).abs() < {tolerance:?} {{", p.expr_text(*value));
-                block(p, then, depth + 1, loops, out);
-                if !otherwise.is_empty() {
-                    let _ = writeln!(out, "{pad}}} else {{");
+                let test = format!("({}).abs() < {tolerance:?}", p.expr_text(*value));
+                if then.is_empty() {
+                    let _ = writeln!(out, "{pad}if !({test}) {{");
                     block(p, otherwise, depth + 1, loops, out);
+                } else {
+                    let _ = writeln!(out, "{pad}if {test} {{");
+                    block(p, then, depth + 1, loops, out);
+                    if !otherwise.is_empty() {
+                        let _ = writeln!(out, "{pad}}} else {{");
+                        block(p, otherwise, depth + 1, loops, out);
+                    }
                 }
                 let _ = writeln!(out, "{pad}}}");
             }
@@ -265,34 +315,32 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                 block(p, otherwise, depth + 1, loops, out);
                 let _ = writeln!(out, "{pad}}}");
             }
-            Stmt::Emit(values) => {
-                let _ = writeln!(out, "{pad}sink.offer([");
-                for value in values {
-                    let _ = match *value {
-                        Value::Angle(c, s) => {
-                            writeln!(out, "{pad}    [{}, {}],", p.expr_text(c), p.expr_text(s))
-                        }
-                        Value::Length(x) => writeln!(out, "{pad}    [{}, 0.0],", p.expr_text(x)),
-                    };
-                }
-                let _ = writeln!(out, "{pad}]);");
+            Stmt::Offer { values, angles, misses } => {
+                let step = |value: &Value| match *value {
+                    Value::Angle(c, s) => format!("[{}, {}]", p.expr_text(c), p.expr_text(s)),
+                    Value::Length(x) => format!("[{}, 0.0]", p.expr_text(x)),
+                };
+                let text = |e: &Expr| p.expr_text(*e);
+                let list = |items: Vec<String>| items.join(", ");
+                let _ = writeln!(
+                    out,
+                    "{pad}sink.offer(\n{pad}    [{}],\n{pad}    [{}],\n{pad}    [{}],\n{pad});",
+                    list(values.iter().map(step).collect()),
+                    list(angles.iter().map(text).collect()),
+                    list(misses.iter().map(text).collect()),
+                );
             }
+            Stmt::Emit(_) => unreachable!("a prepared program offers"),
         }
     }
 }
 
-fn uses_six(block: &Block) -> bool {
-    block.iter().any(|stmt| {
-        matches!(stmt, Stmt::ForEach { kind: crate::ir::RootKind::Six, .. })
-            || crate::ir::blocks_of(stmt).into_iter().any(uses_six)
-    })
-}
-
 /// The kernel's files as modules, without their tests.
 fn kernel(program: &Program, options: &RustOptions, out: &mut String) {
-    let further: &[(&str, &str)] = if uses_six(&program.body) { &SIX_SOURCES } else { &[] };
+    let conic: &[(&str, &str)] = if program.uses(RootKind::Conic) { &[CONIC_SOURCE] } else { &[] };
+    let six: &[(&str, &str)] = if program.uses(RootKind::Six) { &SIX_SOURCES } else { &[] };
     let sqrt = ("sqrt", if options.std { PLATFORM_SQRT } else { CORE_SQRT });
-    for (name, source) in [sqrt].iter().chain(&SOURCES).chain(further) {
+    for (name, source) in [sqrt].iter().chain(&SOURCES).chain(conic).chain(six) {
         let code = source.split("#[cfg(test)]").next().unwrap_or(source);
         let _ = writeln!(out, "mod {name} {{");
         for line in code.trim_end().lines() {

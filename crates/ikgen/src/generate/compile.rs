@@ -84,6 +84,12 @@ impl Compiled {
         crate::backend::rust_source(&self.program, &chain, options)
     }
 
+    /// The program as C header and source; `name` is the prefix of what they export and the stem of the files.
+    pub fn c_source(&self, name: &str) -> Result<crate::backend::CSource, crate::backend::CError> {
+        let chain = crate::run::TrueChain::new(&self.chain).expect("the chain was small enough to compile");
+        crate::backend::c_source(&self.program, &chain, name)
+    }
+
     /// The chain that was compiled.
     pub fn chain(&self) -> &SerialChain {
         &self.chain

@@ -15,6 +15,10 @@ pub struct Var(pub(crate) u32);
 pub enum Unary {
     /// `-x`
     Neg,
+    /// `opposite(x)`: the angle half a turn on, in (-pi, pi]
+    Opposite,
+    /// `mirrored(x)`: the angle with the other sign, in (-pi, pi]
+    Mirrored,
     /// `sqrt(x)`, 0 for negative `x`
     Sqrt,
     /// `sin(x)`
@@ -38,6 +42,8 @@ pub enum Binary {
     Min,
     /// `max(a, b)`
     Max,
+    /// `angle_of(s, c)`: the angle with this sine and cosine, in (-pi, pi]
+    AngleOf,
 }
 
 /// What an expression is made of.
@@ -82,6 +88,8 @@ impl Unary {
         use crate::kernel::math;
         match self {
             Unary::Neg => -x,
+            Unary::Opposite => math::opposite(x),
+            Unary::Mirrored => math::mirrored(x),
             Unary::Sqrt => math::sqrt(x),
             Unary::Sin => math::cos_sin(x)[1],
             Unary::Cos => math::cos_sin(x)[0],
@@ -99,6 +107,7 @@ impl Binary {
             Binary::Div => a / b,
             Binary::Min => a.min(b),
             Binary::Max => a.max(b),
+            Binary::AngleOf => crate::kernel::math::angle_of(a, b),
         }
     }
 }
@@ -248,13 +257,24 @@ impl Exprs {
                     return a;
                 }
             }
+            Binary::AngleOf => match (negated(self, a), negated(self, b)) {
+                (Some(a), Some(b)) => {
+                    let angle = self.binary(f, a, b);
+                    return self.unary(Unary::Opposite, angle);
+                }
+                (Some(a), None) => {
+                    let angle = self.binary(f, a, b);
+                    return self.unary(Unary::Mirrored, angle);
+                }
+                _ => {}
+            },
             Binary::Min | Binary::Max => {
                 if a == b {
                     return a;
                 }
             }
         }
-        let commutes = !matches!(f, Binary::Sub | Binary::Div);
+        let commutes = !matches!(f, Binary::Sub | Binary::Div | Binary::AngleOf);
         let (a, b) = if commutes && b < a { (b, a) } else { (a, b) };
         self.intern(Node::Binary(f, a, b))
     }

@@ -16,6 +16,8 @@ pub enum RootKind {
     Align,
     /// `mirror x y -> c s`: the two angles along (x, y) and (x, -y).
     Mirror,
+    /// `half x y -> c s`: the angle along (x, |y|): of two mirrored ones that with a positive sine.
+    Half,
     /// `circle a b d -> c s`: `a cos + b sin = d`.
     Circle,
     /// `conic a b c d e f -> c s`: `a cos^2 + b cos sin + c sin^2 + d cos + e sin + f = 0`.
@@ -29,14 +31,15 @@ pub enum RootKind {
 
 impl RootKind {
     /// All kinds.
-    pub const ALL: [RootKind; 6] =
-        [Self::Align, Self::Mirror, Self::Circle, Self::Conic, Self::Quadratic, Self::Six];
+    pub const ALL: [RootKind; 7] =
+        [Self::Align, Self::Mirror, Self::Half, Self::Circle, Self::Conic, Self::Quadratic, Self::Six];
 
     /// Its word in the text form.
     pub fn word(self) -> &'static str {
         match self {
             Self::Align => "align",
             Self::Mirror => "mirror",
+            Self::Half => "half",
             Self::Circle => "circle",
             Self::Conic => "conic",
             Self::Quadratic => "quadratic",
@@ -47,7 +50,7 @@ impl RootKind {
     /// Number of arguments.
     pub fn arguments(self) -> usize {
         match self {
-            Self::Align | Self::Mirror => 2,
+            Self::Align | Self::Mirror | Self::Half => 2,
             Self::Circle | Self::Quadratic => 3,
             Self::Conic => 6,
             Self::Six => crate::kernel::six::NUMBERS,
@@ -64,14 +67,15 @@ impl RootKind {
     }
 
     /// The roots of one unknown for these argument values; none for [`Six`](Self::Six), which has six.
-    pub fn solve(self, x: &[f64], slack: f64) -> crate::kernel::roots::Roots {
+    pub fn solve(self, x: &[f64], slack: f64) -> crate::kernel::roots::Roots<4> {
         use crate::kernel::roots;
         match self {
-            Self::Align => roots::align(x[0], x[1], slack),
-            Self::Mirror => roots::mirror(x[0], x[1], slack),
-            Self::Circle => roots::circle(x[0], x[1], x[2], slack),
-            Self::Conic => roots::conic([x[0], x[1], x[2], x[3], x[4], x[5]], slack),
-            Self::Quadratic => roots::quadratic(x[0], x[1], x[2], slack),
+            Self::Align => roots::align(x[0], x[1], slack).widened(),
+            Self::Mirror => roots::mirror(x[0], x[1], slack).widened(),
+            Self::Half => roots::half(x[0], x[1], slack).widened(),
+            Self::Circle => roots::circle(x[0], x[1], x[2], slack).widened(),
+            Self::Conic => crate::kernel::conic::conic([x[0], x[1], x[2], x[3], x[4], x[5]], slack),
+            Self::Quadratic => roots::quadratic(x[0], x[1], x[2], slack).widened(),
             Self::Six => roots::Roots::NONE,
         }
     }
@@ -87,6 +91,14 @@ pub enum Value {
 }
 
 impl Value {
+    /// The same with other expressions.
+    fn map(&self, expr: &mut dyn FnMut(Expr) -> Expr) -> Self {
+        match *self {
+            Value::Angle(c, s) => Value::Angle(expr(c), expr(s)),
+            Value::Length(x) => Value::Length(expr(x)),
+        }
+    }
+
     /// The expressions in it.
     pub fn exprs(&self) -> impl Iterator<Item = Expr> {
         let (a, b) = match *self {
@@ -138,6 +150,15 @@ pub enum Stmt {
     },
     /// A candidate solution: one value for each variable.
     Emit(Vec<Value>),
+    /// A candidate with all that its check needs; only in programs that are [prepared](crate::passes::prepare) for a chain.
+    Offer {
+        /// As emitted.
+        values: Vec<Value>,
+        /// The value of each variable: angles in (-pi, pi].
+        angles: Vec<Expr>,
+        /// Squares of how far the candidate is from the pose: rotation (Frobenius norm, times its lever), position.
+        misses: [Expr; 2],
+    },
     /// Why the following statements hold; for readers and for the comments of generated sources.
     Note(String),
 }
@@ -197,6 +218,22 @@ impl Program {
         validate::program(self)
     }
 
+    /// The name of a variable.
+    pub fn name(&self, var: Var) -> &str {
+        &self.names[var.0 as usize]
+    }
+
+    /// Whether an equation of this kind is solved anywhere.
+    pub fn uses(&self, kind: RootKind) -> bool {
+        fn in_block(block: &Block, wanted: RootKind) -> bool {
+            block.iter().any(|stmt| {
+                matches!(stmt, Stmt::ForEach { kind, .. } if *kind == wanted)
+                    || blocks_of(stmt).into_iter().any(|inner| in_block(inner, wanted))
+            })
+        }
+        in_block(&self.body, kind)
+    }
+
     /// The text of one expression.
     pub fn expr_text(&self, e: Expr) -> String {
         print::expr(self, e)
@@ -209,6 +246,9 @@ pub fn exprs_of(stmt: &Stmt, mut f: impl FnMut(Expr)) {
         Stmt::Let { value, .. } | Stmt::IfZero { value, .. } => f(*value),
         Stmt::ForEach { args, .. } => args.iter().for_each(|e| f(*e)),
         Stmt::Emit(values) => values.iter().flat_map(Value::exprs).for_each(f),
+        Stmt::Offer { values, angles, misses } => {
+            values.iter().flat_map(Value::exprs).chain(angles.iter().chain(misses).copied()).for_each(f);
+        }
         Stmt::Note(_) | Stmt::Fallback { .. } => {}
     }
 }
@@ -239,15 +279,12 @@ pub fn map_stmt(stmt: &Stmt, expr: &mut dyn FnMut(Expr) -> Expr) -> Stmt {
             then: then.clone(),
             otherwise: otherwise.clone(),
         },
-        Stmt::Emit(values) => Stmt::Emit(
-            values
-                .iter()
-                .map(|v| match *v {
-                    Value::Angle(c, s) => Value::Angle(expr(c), expr(s)),
-                    Value::Length(x) => Value::Length(expr(x)),
-                })
-                .collect(),
-        ),
+        Stmt::Emit(values) => Stmt::Emit(values.iter().map(|v| v.map(expr)).collect()),
+        Stmt::Offer { values, angles, misses } => Stmt::Offer {
+            values: values.iter().map(|v| v.map(expr)).collect(),
+            angles: angles.iter().map(|e| expr(*e)).collect(),
+            misses: misses.map(expr),
+        },
         Stmt::Note(_) | Stmt::Fallback { .. } => stmt.clone(),
     }
 }

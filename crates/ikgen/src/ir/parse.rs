@@ -370,8 +370,14 @@ impl Reader {
     }
 
     fn call(&mut self, word: &str) -> Result<Expr, TextError> {
-        let unary = [("sqrt", Unary::Sqrt), ("sin", Unary::Sin), ("cos", Unary::Cos)];
-        let binary = [("min", Binary::Min), ("max", Binary::Max)];
+        let unary = [
+            ("sqrt", Unary::Sqrt),
+            ("sin", Unary::Sin),
+            ("cos", Unary::Cos),
+            ("opposite", Unary::Opposite),
+            ("mirrored", Unary::Mirrored),
+        ];
+        let binary = [("min", Binary::Min), ("max", Binary::Max), ("angle_of", Binary::AngleOf)];
         if let Some((_, f)) = unary.into_iter().find(|(w, _)| *w == word) {
             self.sign('(')?;
             let a = self.sum()?;

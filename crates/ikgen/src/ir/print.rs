@@ -50,7 +50,7 @@ fn block(p: &Program, stmts: &Block, depth: usize, out: &mut String) {
                 block(p, otherwise, depth + 1, out);
                 let _ = writeln!(out, "{pad}}}");
             }
-            Stmt::Emit(values) => {
+            Stmt::Emit(values) | Stmt::Offer { values, .. } => {
                 let values: Vec<String> = values
                     .iter()
                     .map(|v| match *v {
@@ -109,11 +109,14 @@ fn write_expr(p: &Program, e: Expr, level: u8, out: &mut String) {
                 write_expr(p, a, 2, out);
             }
         }
+        Node::Unary(Unary::Opposite, a) => call("opposite", &[a], out),
+        Node::Unary(Unary::Mirrored, a) => call("mirrored", &[a], out),
         Node::Unary(Unary::Sqrt, a) => call("sqrt", &[a], out),
         Node::Unary(Unary::Sin, a) => call("sin", &[a], out),
         Node::Unary(Unary::Cos, a) => call("cos", &[a], out),
         Node::Binary(Binary::Min, a, b) => call("min", &[a, b], out),
         Node::Binary(Binary::Max, a, b) => call("max", &[a, b], out),
+        Node::Binary(Binary::AngleOf, a, b) => call("angle_of", &[a, b], out),
         Node::Binary(f, a, b) => {
             let (word, own, right) = match f {
                 Binary::Add => (" + ", 0, 1),

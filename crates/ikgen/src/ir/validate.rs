@@ -85,7 +85,7 @@ impl Validator<'_> {
                     self.block(first)?;
                     self.block(otherwise)?;
                 }
-                Stmt::Emit(values) => {
+                Stmt::Emit(values) | Stmt::Offer { values, .. } => {
                     let expected = self.program.variables;
                     if values.len() != expected {
                         return Err(Invalid::Emit { found: values.len(), expected });

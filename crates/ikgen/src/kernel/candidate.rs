@@ -1,7 +1,7 @@
 //! From candidates to solutions: each is checked on the true chain, polished where it must be, and kept if it is new.
 
 use super::chain::{EXACT, Frame, Link, MAX_JOINTS, TOLERANCE, forward, polish};
-use super::math::{atan2, cos_sin};
+use super::math::{angle_of, cos_sin};
 
 /// Solutions closer than this in every variable (radians modulo a turn, metres) are the same one.
 pub const SAME: f64 = 1e-7;
@@ -27,6 +27,11 @@ pub struct Arm<'a> {
     pub held: &'a [bool],
 }
 
+/// Whether a candidate that misses by the roots of these squares (rotation, position) needs no polish.
+pub fn is_exact(misses: [f64; 2]) -> bool {
+    misses[0] <= EXACT * EXACT && misses[1] <= EXACT * EXACT
+}
+
 impl Arm<'_> {
     /// `base_from_tip` for the `[cos, sin]` or `[length, _]` of each variable.
     pub fn forward_steps(&self, steps: &[[f64; 2]]) -> Frame {
@@ -38,7 +43,7 @@ impl Arm<'_> {
             } else if link.slides {
                 [link.ratio * x, 0.0]
             } else {
-                cos_sin(link.ratio * atan2(y, x))
+                cos_sin(link.ratio * angle_of(y, x))
             };
         }
         forward(self.links, self.last_from_tip, &moves[..self.links.len()])
@@ -63,7 +68,7 @@ impl Arm<'_> {
         }
         for i in 0..values.len() {
             if !self.held[i] {
-                values[i] = if self.slides[i] { steps[i][0] } else { atan2(steps[i][1], steps[i][0]) };
+                values[i] = if self.slides[i] { steps[i][0] } else { angle_of(steps[i][1], steps[i][0]) };
             }
         }
         if distance <= EXACT {

@@ -63,22 +63,26 @@ pub fn atan2(y: f64, x: f64) -> f64 {
         [0.718_829_999_621_624_5, -2.147_838_844_445_698_3e-17],
         [0.785_398_163_397_448_3, 3.061_616_997_868_383e-17],
     ];
+    /// What the angle of the octant is added to, its rest, and with which sign: beyond the diagonal, left, both.
+    const OCTANTS: [[f64; 3]; 4] = [
+        [0.0, 0.0, 1.0],
+        [FRAC_PI_2, 6.123_233_995_736_766e-17, -1.0],
+        [PI, 1.224_646_799_147_353_2e-16, -1.0],
+        [FRAC_PI_2, 6.123_233_995_736_766e-17, 1.0],
+    ];
     let (ax, ay) = (x.abs(), y.abs());
     let (large, small) = if ax > ay { (ax, ay) } else { (ay, ax) };
-    if large == 0.0 || !(large < f64::INFINITY) {
-        return 0.0;
-    }
     // Quotients of numbers near the ends of the range lose digits.
-    let scale = if large < 1e-280 {
-        1e200
-    } else if large > 1e280 {
-        1e-200
-    } else {
-        1.0
-    };
-    let (large, small) = (large * scale, small * scale);
+    if !(large > 1e-280 && large < 1e280) {
+        return match large {
+            _ if large == 0.0 || !(large < f64::INFINITY) => 0.0,
+            _ if large < 1.0 => atan2(y * 1e200, x * 1e200),
+            _ => atan2(y * 1e-200, x * 1e-200),
+        };
+    }
+    // No branch depends on the octant: it is as good as random.
     let ratio = small / large;
-    let k = if ratio < 0.125 { 0 } else { (ratio * 8.0 + 0.5) as usize };
+    let k = (ratio * 8.0 + 0.5) as usize * usize::from(ratio >= 0.125);
     let tangent = k as f64 * 0.125;
     let top = upper_half(large);
     let over = (small - tangent * top) - tangent * (large - top);
@@ -91,17 +95,65 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     for d in [-15.0, 13.0, -11.0, 9.0, -7.0, 5.0, -3.0] {
         p = 1.0 / d + z * p;
     }
-    let (base, base_low, sign) = match (ay > ax, x < 0.0) {
-        (true, negative) => (FRAC_PI_2, 6.123_233_995_736_766e-17, if negative { 1.0 } else { -1.0 }),
-        (false, true) => (PI, 1.224_646_799_147_353_2e-16, -1.0),
-        (false, false) => (0.0, 0.0, 1.0),
-    };
+    let [base, base_low, sign] = OCTANTS[usize::from(ay > ax) + 2 * usize::from(x < 0.0)];
     let [table, table_low] = EIGHTHS[k];
     let coarse = base + sign * table;
     let fine = coarse + sign * t;
     let rest = (sign * table - (coarse - base)) + (sign * t - (fine - coarse));
     let angle = fine + (rest + (base_low + sign * (table_low + (t_low + t * z * p))));
     if y < 0.0 { -angle } else { angle }
+}
+
+/// Angle with this sine and cosine in (-pi, pi], within two places; faster than [`atan2`] as the point is on the unit circle.
+///
+/// Folded to the first octant and turned back by the nearest of the angles with sine `k/16`; what is left is a small sine.
+pub fn angle_of(sine: f64, cosine: f64) -> f64 {
+    use core::f64::consts::{FRAC_PI_2, PI};
+    /// Cosine and angle.
+    const SIXTEENTHS: [[f64; 2]; 12] = [
+        [1.0, 0.0],
+        [0.998_044_963_916_957, 0.062_540_761_796_491_39],
+        [0.992_156_741_649_221_5, 0.125_327_831_168_065_4],
+        [0.982_264_602_843_857, 0.188_616_386_175_404_1],
+        [0.968_245_836_551_854_3, 0.252_680_255_142_078_65],
+        [0.949_917_759_598_166_5, 0.317_823_703_927_880_73],
+        [0.927_024_810_886_957_9, 0.384_396_774_495_639_1],
+        [0.899_218_410_621_135, 0.452_816_594_744_925_6],
+        [0.866_025_403_784_438_6, 0.523_598_775_598_298_9],
+        [0.826_797_284_707_684_5, 0.597_406_416_645_350_2],
+        [0.780_624_749_799_799_8, 0.675_131_532_937_031_7],
+        [0.726_184_377_413_890_6, 0.758_040_765_426_236],
+    ];
+    /// What the angle of the octant is added to, and with which sign: beyond the diagonal, left, both.
+    const OCTANTS: [[f64; 2]; 4] = [[0.0, 1.0], [FRAC_PI_2, -1.0], [PI, -1.0], [FRAC_PI_2, 1.0]];
+    let (ac, as_) = (cosine.abs(), sine.abs());
+    let (large, small) = if ac > as_ { (ac, as_) } else { (as_, ac) };
+    // The cast gives 0 for what is not a number.
+    let k = (small * 16.0 + 0.5) as u32 as usize;
+    let k = if k > 11 { 11 } else { k };
+    let [cos, angle] = SIXTEENTHS[k];
+    let x = small * cos - large * (k as f64 * 0.0625);
+    let z = x * x;
+    let mut p = 945.0 / 42_240.0;
+    for coefficient in [105.0 / 3_456.0, 15.0 / 336.0, 3.0 / 40.0, 1.0 / 6.0] {
+        p = coefficient + z * p;
+    }
+    let octant = angle + (x + x * z * p);
+    let [base, sign] = OCTANTS[usize::from(as_ > ac) + 2 * usize::from(cosine < 0.0)];
+    let angle = base + sign * octant;
+    if sine < 0.0 { mirrored(angle) } else { angle }
+}
+
+/// The angle half a turn on; both in (-pi, pi].
+pub fn opposite(angle: f64) -> f64 {
+    use core::f64::consts::PI;
+    let turned = if angle > 0.0 { angle - PI } else { angle + PI };
+    if turned > -PI { turned } else { PI }
+}
+
+/// The angle with the other sign; both in (-pi, pi].
+pub fn mirrored(angle: f64) -> f64 {
+    if angle < core::f64::consts::PI { -angle } else { angle }
 }
 
 /// The number without the lower half of its digits.
@@ -238,6 +290,23 @@ mod tests {
             worst = worst.max(error);
         }
         assert!(worst > 0.4, "the oracle sees no rounding: {worst}");
+    }
+
+    #[test]
+    fn angles_of_unit_vectors_agree_with_the_arc_tangent() {
+        let mut worst = 0.0f64;
+        for angle in angles() {
+            let [c, s] = cos_sin(angle);
+            let (found, exact) = (angle_of(s, c), atan2(s, c));
+            let apart = (found - exact).abs();
+            worst = worst.max(apart.min((apart - 2.0 * PI).abs()) / place(exact).max(place(0.1)));
+            assert_eq!([opposite(found), mirrored(found)].map(|a| a > -PI && a <= PI), [true; 2]);
+            assert!((angle_of(-s, -c) - opposite(found)).abs() < 1e-15, "{angle}");
+            assert!((angle_of(-s, c) - mirrored(found)).abs() < 1e-15, "{angle}");
+        }
+        assert!(worst <= 2.0, "{worst} places");
+        assert_eq!([angle_of(0.0, -1.0), angle_of(-0.0, -1.0)], [PI; 2]);
+        assert_eq!([opposite(PI), mirrored(PI), opposite(0.0)], [0.0, PI, PI]);
     }
 
     #[test]

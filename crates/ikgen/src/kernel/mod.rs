@@ -9,6 +9,7 @@
 
 pub mod candidate;
 pub mod chain;
+pub mod conic;
 pub mod eigen;
 pub mod elimination;
 pub mod math;
@@ -16,8 +17,7 @@ pub mod null;
 pub mod roots;
 pub mod six;
 pub mod sqrt;
-#[cfg(test)]
-mod sqrt_core;
+pub mod sqrt_core;
 pub mod vector;
 pub mod waves;
 
@@ -29,6 +29,10 @@ pub(crate) const SOURCES: [(&str, &str); 4] = [
     ("chain", include_str!("chain.rs")),
     ("candidate", include_str!("candidate.rs")),
 ];
+
+/// Source text of the further file of programs with a quartic.
+#[cfg(feature = "generate")]
+pub(crate) const CONIC_SOURCE: (&str, &str) = ("conic", include_str!("conic.rs"));
 
 /// Source text of the further files of programs that solve six joints in general.
 #[cfg(feature = "generate")]

@@ -18,25 +18,32 @@ fn representative(k: usize) -> [f64; 2] {
     cos_sin(reversed * (core::f64::consts::TAU / 32.0))
 }
 
-/// The roots of an equation, each `[cos, sin]` of an angle, or `[length, 0]`.
+/// The roots of an equation, at most `N`, each `[cos, sin]` of an angle, or `[length, 0]`.
 #[derive(Clone, Copy, Debug)]
-pub struct Roots {
-    items: [[f64; 2]; 4],
+pub struct Roots<const N: usize> {
+    items: [[f64; 2]; N],
     len: usize,
     /// The unknown is free, or nearly so: later roots are tried only while none has led to a solution.
     pub free: bool,
 }
 
-impl Roots {
+impl<const N: usize> Roots<N> {
     /// No root.
-    pub const NONE: Roots = Roots { items: [[1.0, 0.0]; 4], len: 0, free: false };
+    pub const NONE: Self = Roots { items: [[1.0, 0.0]; N], len: 0, free: false };
 
     /// Any angle will do.
-    pub const ANY_ANGLE: Roots = Roots { items: [[1.0, 0.0]; 4], len: 0, free: true };
+    pub const ANY_ANGLE: Self = Roots { items: [[1.0, 0.0]; N], len: 0, free: true };
 
     /// How many roots there are.
     pub fn count(&self) -> usize {
         if self.free { self.len + REPRESENTATIVES } else { self.len }
+    }
+
+    /// The same, with room for more.
+    pub fn widened<const M: usize>(&self) -> Roots<M> {
+        let mut items = [[1.0, 0.0]; M];
+        items[..self.len].copy_from_slice(&self.items[..self.len]);
+        Roots { items, len: self.len, free: self.free }
     }
 
     /// One of them.
@@ -44,8 +51,9 @@ impl Roots {
         if i < self.len { self.items[i] } else { representative(i - self.len) }
     }
 
-    fn push(&mut self, root: [f64; 2]) {
-        if self.len < 4 {
+    /// Adds one, if there is room.
+    pub fn push(&mut self, root: [f64; 2]) {
+        if self.len < N {
             self.items[self.len] = root;
             self.len += 1;
         }
@@ -53,7 +61,7 @@ impl Roots {
 }
 
 /// The angle whose cosine and sine are proportional to `x` and `y`.
-pub fn align(x: f64, y: f64, slack: f64) -> Roots {
+pub fn align(x: f64, y: f64, slack: f64) -> Roots<1> {
     let n = sqrt(x * x + y * y);
     if !(x.abs() + y.abs() < f64::INFINITY) {
         return Roots::NONE;
@@ -68,7 +76,16 @@ pub fn align(x: f64, y: f64, slack: f64) -> Roots {
 }
 
 /// The two angles whose cosine is proportional to `x` and sine to plus or minus `y`.
-pub fn mirror(x: f64, y: f64, slack: f64) -> Roots {
+pub fn mirror(x: f64, y: f64, slack: f64) -> Roots<2> {
+    let mut roots: Roots<2> = half(x, y, slack).widened();
+    if roots.len > 0 && roots.items[0][1] > VANISHING {
+        roots.push([roots.items[0][0], -roots.items[0][1]]);
+    }
+    roots
+}
+
+/// Of the two angles of [`mirror`] the one whose sine is positive.
+pub fn half(x: f64, y: f64, slack: f64) -> Roots<1> {
     let n = sqrt(x * x + y * y);
     if !(x.abs() + y.abs() < f64::INFINITY) {
         return Roots::NONE;
@@ -77,11 +94,7 @@ pub fn mirror(x: f64, y: f64, slack: f64) -> Roots {
         return Roots::ANY_ANGLE;
     }
     let mut roots = Roots::NONE;
-    let (x, y) = (x / n, apart(y.abs() / n, slack / n));
-    roots.push([x, y]);
-    if y > VANISHING {
-        roots.push([x, -y]);
-    }
+    roots.push([x / n, apart(y.abs() / n, slack / n)]);
     roots
 }
 
@@ -96,7 +109,7 @@ fn apart(sine: f64, slack: f64) -> f64 {
 ///
 /// When the line misses the unit circle by no more than [`EDGE`] and `slack` the nearest angle is given: such poses are at the
 /// edge of what the arm can do, and the check of solutions decides.
-pub fn circle(a: f64, b: f64, d: f64, slack: f64) -> Roots {
+pub fn circle(a: f64, b: f64, d: f64, slack: f64) -> Roots<2> {
     let n = sqrt(a * a + b * b);
     if !(a.abs() + b.abs() < f64::INFINITY) {
         return Roots::NONE;
@@ -121,7 +134,7 @@ pub fn circle(a: f64, b: f64, d: f64, slack: f64) -> Roots {
 }
 
 /// The lengths with `a t^2 + b t + c = 0`; a discriminant that misses zero by `slack` counts as zero.
-pub fn quadratic(a: f64, b: f64, c: f64, slack: f64) -> Roots {
+pub fn quadratic(a: f64, b: f64, c: f64, slack: f64) -> Roots<2> {
     let mut roots = Roots::NONE;
     if a.abs() < VANISHING {
         if b.abs() >= VANISHING {
@@ -145,191 +158,15 @@ pub fn quadratic(a: f64, b: f64, c: f64, slack: f64) -> Roots {
     roots
 }
 
-/// The angles with `q[0] cos^2 + q[1] cos sin + q[2] sin^2 + q[3] cos + q[4] sin + q[5] = 0`.
-///
-/// The pencil of the conic and the unit circle holds a pair of real lines through their common points; a cubic gives it,
-/// and each line meets the circle in at most two angles. A Newton step on the equation restores lost digits.
-pub fn conic(q: [f64; 6], slack: f64) -> Roots {
-    let mut size = 0.0f64;
-    for x in q {
-        size = size.max(x.abs());
-    }
-    if !(size < f64::INFINITY) {
-        return Roots::NONE;
-    }
-    if size < VANISHING {
-        return Roots::ANY_ANGLE;
-    }
-    let [a, b, c, d, e, f] = q.map(|x| x / size);
-    // Symmetric matrix of the conic; the circle is diag(1, 1, -1).
-    let (b, d, e) = (0.5 * b, 0.5 * d, 0.5 * e);
-    // det(conic + t circle) = -(t^3 + p t^2 + r t + u).
-    let p = a + c - f;
-    let r = a * c - b * b - f * (a + c) + d * d + e * e;
-    let u = -(a * (c * f - e * e) - b * (b * f - e * d) + d * (b * e - c * d));
-    let mut best = [0.0f64; 9];
-    let mut lowest = f64::INFINITY;
-    for t in cubic(p, r, u) {
-        let m = [a + t, b, d, b, c + t, e, d, e, f - t];
-        // Product of the two eigenvalues that are not zero: negative for a pair of real lines.
-        let product = m[0] * m[4] - m[1] * m[1] + m[0] * m[8] - m[2] * m[2] + m[4] * m[8] - m[5] * m[5];
-        if product < lowest {
-            (lowest, best) = (product, m);
-        }
-    }
-    let mut roots = Roots::NONE;
-    for line in split(&best) {
-        let n = sqrt(line[0] * line[0] + line[1] * line[1]);
-        if n < VANISHING {
-            continue;
-        }
-        let met = circle(line[0] / n, line[1] / n, -line[2] / n, slack.max(1e-7));
-        for i in 0..met.count() {
-            roots.push(improve([a, 2.0 * b, c, 2.0 * d, 2.0 * e, f], met.get(i)));
-        }
-    }
-    roots
-}
-
-/// Real roots of `t^3 + p t^2 + r t + u`, the first repeated where there is only one.
-fn cubic(p: f64, r: f64, u: f64) -> [f64; 3] {
-    // Newton from outside of all roots on the side of the inflection where a root must be: monotone.
-    let inflection = -p / 3.0;
-    let value = |t: f64| ((t + p) * t + r) * t + u;
-    let spread = sqrt((p * p - 3.0 * r).max(0.0));
-    let side = if value(inflection) > 0.0 { -1.0 } else { 1.0 };
-    let mut t = inflection + side * (spread * 0.7 + 1e-9);
-    while value(t) * side < 0.0 {
-        t = inflection + 2.0 * (t - inflection);
-    }
-    for _ in 0..60 {
-        let slope = (3.0 * t + 2.0 * p) * t + r;
-        if slope == 0.0 {
-            break;
-        }
-        let next = t - value(t) / slope;
-        if !(next < f64::INFINITY && next > -f64::INFINITY) || (next - t).abs() <= 1e-16 * t.abs() {
-            break;
-        }
-        t = next;
-    }
-    // The other two from the quotient t^2 + (p + t) t + (r + t (p + t)).
-    let (b, c) = (p + t, r + t * (p + t));
-    let half = -0.5 * b;
-    let discriminant = half * half - c;
-    if discriminant < 0.0 {
-        // A double root whose discriminant was lost to rounding still counts.
-        return if discriminant > -1e-12 * (half * half + c.abs()) { [t, half, half] } else { [t, t, t] };
-    }
-    let far = if half < 0.0 { half - sqrt(discriminant) } else { half + sqrt(discriminant) };
-    [t, far, if far == 0.0 { 0.0 } else { c / far }]
-}
-
-/// The two lines of a degenerate conic, row by row.
-fn split(m: &[f64; 9]) -> [[f64; 3]; 2] {
-    let adjugate = [
-        m[5] * m[7] - m[4] * m[8],
-        m[1] * m[8] - m[2] * m[7],
-        m[2] * m[4] - m[1] * m[5],
-        0.0,
-        m[2] * m[6] - m[0] * m[8],
-        m[0] * m[5] - m[2] * m[3],
-        0.0,
-        0.0,
-        m[1] * m[3] - m[0] * m[4],
-    ];
-    // Minus the adjugate is the square p p^T of the point where the lines meet.
-    let square = [
-        [adjugate[0], adjugate[1], adjugate[2]],
-        [adjugate[1], adjugate[4], adjugate[5]],
-        [adjugate[2], adjugate[5], adjugate[8]],
-    ];
-    let mut i = 0;
-    for k in 1..3 {
-        if square[k][k] > square[i][i] {
-            i = k;
-        }
-    }
-    let root = sqrt(square[i][i]);
-    let meeting = if root > 0.0 { square[i].map(|x| x / root) } else { [0.0; 3] };
-    let [x, y, z] = meeting;
-    let lines = [[m[0], m[1] - z, m[2] + y], [m[3] + z, m[4], m[5] - x], [m[6] - y, m[7] + x, m[8]]];
-    let (mut row, mut column) = (0, 0);
-    for i in 0..3 {
-        for j in 0..3 {
-            if lines[i][j].abs() > lines[row][column].abs() {
-                (row, column) = (i, j);
-            }
-        }
-    }
-    [lines[row], [lines[0][column], lines[1][column], lines[2][column]]]
-}
-
-/// Two Newton steps of the conic's equation along the circle, taken only where they help.
-fn improve(q: [f64; 6], root: [f64; 2]) -> [f64; 2] {
-    let value = |[c, s]: [f64; 2]| (q[0] * c + q[1] * s + q[3]) * c + (q[2] * s + q[4]) * s + q[5];
-    let mut at = root;
-    let mut error = value(at);
-    for _ in 0..2 {
-        let [c, s] = at;
-        let slope = 2.0 * (q[2] - q[0]) * c * s + q[1] * (c * c - s * s) - q[3] * s + q[4] * c;
-        let step = -error / slope;
-        if !(step.abs() < 1e-2) {
-            break;
-        }
-        let next = [c - s * step, s + c * step];
-        let n = sqrt(next[0] * next[0] + next[1] * next[1]);
-        let next = [next[0] / n, next[1] / n];
-        let next_error = value(next);
-        if next_error.abs() >= error.abs() {
-            break;
-        }
-        (at, error) = (next, next_error);
-    }
-    at
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use robotc_core::Seed;
-
-    #[test]
-    fn conics_through_known_angles_are_met_there() {
-        let mut rng = Seed::new(3).rng();
-        for case in 0..20_000 {
-            // A product of two chords of the circle has its four end points as roots.
-            let angles = core::array::from_fn::<f64, 4, _>(|_| rng.range(-3.0, 3.0));
-            let chord = |p: f64, q: f64| {
-                let (m, h) = (0.5 * (p + q), 0.5 * (p - q));
-                [m.cos(), m.sin(), -h.cos()]
-            };
-            let (l, m) = (chord(angles[0], angles[1]), chord(angles[2], angles[3]));
-            // Any multiple of the circle changes nothing.
-            let t = rng.range(-1.0, 1.0);
-            let q = [
-                l[0] * m[0] + t,
-                l[0] * m[1] + l[1] * m[0],
-                l[1] * m[1] + t,
-                l[0] * m[2] + l[2] * m[0],
-                l[1] * m[2] + l[2] * m[1],
-                l[2] * m[2] - t,
-            ];
-            let roots = conic(q, 1e-9);
-            for angle in angles {
-                let gap =
-                    angles.iter().filter(|a| **a != angle).map(|a| (a - angle).abs()).fold(9.0, f64::min);
-                let near = (0..roots.count())
-                    .map(|i| (roots.get(i)[0] - angle.cos()).abs().max((roots.get(i)[1] - angle.sin()).abs()))
-                    .fold(9.0, f64::min);
-                assert!(near < 1e-10 / gap.min(1.0).powi(2), "case {case}: {angles:?} {roots:?} {near:e}");
-            }
-        }
-    }
 
     #[test]
     fn circle_at_its_edge_and_without_information() {
-        let all = |r: Roots| (0..r.count()).map(|i| r.get(i)).collect::<Vec<_>>();
+        fn all<const N: usize>(r: Roots<N>) -> Vec<[f64; 2]> {
+            (0..r.count()).map(|i| r.get(i)).collect()
+        }
         assert_eq!(all(circle(1.0, 0.0, 1.0 + 1e-12, 0.0)), [[1.0, 0.0]]);
         assert_eq!(circle(1.0, 0.0, 1.0 + 1e-5, 1e-4).count(), 2);
         assert_eq!(circle(1.0, 0.0, 1.1, 1e-9).count(), 0);

@@ -2,8 +2,7 @@
 
 use super::math::product_rest;
 
-/// Square root, correctly rounded except just below powers of four (there it may be the power of two); 0 for arguments that are
-/// negative or below 1e-300.
+/// Square root, correctly rounded; 0 for arguments that are negative or below 1e-300.
 pub fn sqrt(x: f64) -> f64 {
     if !(x > 1e-300) {
         return 0.0;
@@ -18,9 +17,12 @@ pub fn sqrt(x: f64) -> f64 {
         inverse *= 1.5 - half * inverse * inverse;
     }
     let root = x * inverse;
-    // What is missing, with the square taken exactly.
-    let rest = (x - root * root) - product_rest(root, root);
-    root + 0.5 * inverse * rest
+    // What is missing, with squares taken exactly.
+    let rest = |root: f64| (x - root * root) - product_rest(root, root);
+    let root = root + 0.5 * inverse * rest(root);
+    // Just below powers of four the sum is half way between two numbers: the lower one is nearer.
+    let below = f64::from_bits(root.to_bits() - 1);
+    if rest(root) <= -root * (root - below) { below } else { root }
 }
 
 #[cfg(test)]
@@ -39,8 +41,7 @@ mod tests {
             let x = f64::from(k * k);
             assert_eq!(sqrt(x), f64::from(k));
             let (above, below) = (f64::from_bits(x.to_bits() + 1), f64::from_bits(x.to_bits() - 1));
-            assert_eq!(sqrt(above), above.sqrt());
-            assert!(sqrt(below) == below.sqrt() || k.is_power_of_two());
+            assert_eq!([sqrt(above), sqrt(below)], [above.sqrt(), below.sqrt()]);
         }
         assert_eq!([sqrt(0.0), sqrt(-1.0), sqrt(f64::NAN)], [0.0; 3]);
     }

@@ -1,20 +1,24 @@
 //! Passes over solution programs. Each keeps the meaning of a program, and takes and gives a valid one.
 
 mod dead;
+mod flip;
 mod fold;
 mod hoist;
+mod prepare;
 mod share;
 
 pub use dead::dead;
+pub use flip::flip;
 pub use fold::fold;
 pub use hoist::hoist;
+pub use prepare::prepare;
 pub use share::share;
 
 use crate::ir::{Block, Expr, Exprs, Program, Stmt};
 
 /// All passes, in the order that makes each useful to the next.
 pub fn optimise(program: &Program) -> Program {
-    let program = dead(&hoist(&share(&fold(program))));
+    let program = dead(&hoist(&share(&fold(&flip(program)))));
     debug_assert_eq!(program.validate(), Ok(()));
     program
 }

@@ -3,12 +3,26 @@
 use super::{MOST_ROOTS, SIX_ROOTS, take};
 use crate::ir::{Binary, Block, Expr, Node, Program, RootKind, Stmt, Unary, Value, Var};
 use crate::kernel::chain::{Frame, MAX_JOINTS};
+use crate::kernel::conic::conic;
+use crate::kernel::roots::{self, Roots};
 use crate::kernel::six::{NUMBERS, six_of};
+use crate::run::TrueChain;
 
 /// A program that needs more registers than the machine has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the program needs {0} registers, the bytecode has {MAX_REGISTERS}")]
 pub struct TooLarge(usize);
+
+/// A candidate with all that its check needs; the first entries are those of the chain's variables.
+#[derive(Debug, Clone, Copy)]
+pub struct Candidate {
+    /// `[cos, sin]` or `[length, 0]`.
+    pub steps: [[f64; 2]; MAX_JOINTS],
+    /// Angles in (-pi, pi], or lengths.
+    pub values: [f64; MAX_JOINTS],
+    /// Squares of how far it is from the pose: rotation, position; infinite where that is not known, as the values are not.
+    pub misses: [f64; 2],
+}
 
 /// Registers of the largest machine.
 const MAX_REGISTERS: usize = 4096;
@@ -24,7 +38,10 @@ enum Op {
     Div,
     Min,
     Max,
+    AngleOf,
     Neg,
+    Opposite,
+    Mirrored,
     Sqrt,
     Sin,
     Cos,
@@ -46,15 +63,15 @@ enum Item {
     Six { args: Box<[u16; NUMBERS]>, out: [u16; 12], body: Vec<Item> },
     IfZero { value: u16, tolerance: f64, then: Vec<Item>, otherwise: Vec<Item> },
     Fallback { first: Vec<Item>, otherwise: Vec<Item> },
-    Emit { from: u32, to: u32 },
+    Offer { from: u32, to: u32, misses: [u16; 2] },
 }
 
 /// A program made ready to run: no lookup, no allocation.
 #[derive(Debug, Clone)]
 pub struct Bytecode {
     steps: Vec<Step>,
-    /// Register pairs of emitted values.
-    emitted: Vec<[u16; 2]>,
+    /// Registers of the steps of offered candidates, and of the value of each variable.
+    offered: Vec<[u16; 3]>,
     body: Vec<Item>,
     first_constant: usize,
     constants: Vec<f64>,
@@ -62,7 +79,13 @@ pub struct Bytecode {
 }
 
 impl Bytecode {
-    /// Translates a valid program.
+    /// Translates a valid program [prepared](crate::passes::prepare) for a chain with as many variables: of its candidates is known
+    /// how far they are from the pose.
+    pub fn for_chain(program: &Program, chain: &TrueChain) -> Result<Self, TooLarge> {
+        Self::new(&crate::passes::prepare(program, chain))
+    }
+
+    /// Translates a valid program. Of its candidates only the steps are known, unless it is a prepared one.
     pub fn new(program: &Program) -> Result<Self, TooLarge> {
         let first_constant = POSE_REGISTERS + program.free.len();
         let mut constants: Vec<u64> = Vec::new();
@@ -71,14 +94,14 @@ impl Bytecode {
                 constants.push(bits);
             }
         }
-        constants.push(0);
+        constants.extend([0, f64::INFINITY.to_bits()]);
         constants.sort_unstable();
         constants.dedup();
         let first_name = first_constant + constants.len();
         let mut t = Translator {
             program,
             steps: Vec::new(),
-            emitted: Vec::new(),
+            offered: Vec::new(),
             constants,
             first_constant,
             first_name,
@@ -92,7 +115,7 @@ impl Bytecode {
         }
         Ok(Self {
             steps: t.steps,
-            emitted: t.emitted,
+            offered: t.offered,
             body,
             first_constant,
             constants: t.constants.iter().map(|b| f64::from_bits(*b)).collect(),
@@ -105,15 +128,13 @@ impl Bytecode {
         self.steps.len()
     }
 
-    /// Runs the program and offers each emitted candidate: `[cos, sin]` or `[length, 0]` of each variable.
-    ///
-    /// `offer` says whether the candidate was accepted; returns how many were.
+    /// Runs the program and offers each candidate. `offer` says whether it was accepted; returns how many were.
     pub fn run(
         &self,
         base_from_tip: &Frame,
         free: &[f64],
         slack: f64,
-        offer: &mut impl FnMut(&[[f64; 2]]) -> bool,
+        offer: &mut impl FnMut(&Candidate) -> bool,
     ) -> usize {
         // The smallest file that fits, since clearing it is part of the cost of a call.
         match self.registers {
@@ -130,7 +151,7 @@ impl Bytecode {
         base_from_tip: &Frame,
         free: &[f64],
         slack: f64,
-        offer: &mut impl FnMut(&[[f64; 2]]) -> bool,
+        offer: &mut impl FnMut(&Candidate) -> bool,
     ) -> usize {
         for i in 0..3 {
             registers[3 * i..3 * i + 3].copy_from_slice(&base_from_tip.rotation[i]);
@@ -148,7 +169,7 @@ impl Bytecode {
         x: &mut [f64; N],
         slack: f64,
         left: &mut u32,
-        offer: &mut impl FnMut(&[[f64; 2]]) -> bool,
+        offer: &mut impl FnMut(&Candidate) -> bool,
     ) -> usize {
         // N is a power of two: the mask replaces the bounds check.
         let at = |i: u16| usize::from(i) & (N - 1);
@@ -167,6 +188,9 @@ impl Bytecode {
                             Op::Copy => a,
                             Op::Min => Binary::Min.apply(a, b),
                             Op::Max => Binary::Max.apply(a, b),
+                            Op::AngleOf => Binary::AngleOf.apply(a, b),
+                            Op::Opposite => Unary::Opposite.apply(a),
+                            Op::Mirrored => Unary::Mirrored.apply(a),
                             Op::Sqrt => Unary::Sqrt.apply(a),
                             Op::Sin => Unary::Sin.apply(a),
                             Op::Cos => Unary::Cos.apply(a),
@@ -174,19 +198,25 @@ impl Bytecode {
                     }
                 }
                 Item::ForEach { kind, args, out, outputs, body } => {
-                    let roots = kind.solve(&args.map(|i| x[at(i)]), slack);
-                    let before = accepted;
-                    for i in 0..roots.count() {
-                        if roots.free && accepted > before || !take(left, 1) {
-                            break;
+                    let [a, b, c, d, e, f] = args.map(|i| x[at(i)]);
+                    let each = (&body[..], *out, *outputs);
+                    accepted += match kind {
+                        RootKind::Align => self.each(roots::align(a, b, slack), each, x, slack, left, offer),
+                        RootKind::Mirror => {
+                            self.each(roots::mirror(a, b, slack), each, x, slack, left, offer)
                         }
-                        let root = roots.get(i);
-                        x[at(out[0])] = root[0];
-                        if *outputs > 1 {
-                            x[at(out[1])] = root[1];
+                        RootKind::Half => self.each(roots::half(a, b, slack), each, x, slack, left, offer),
+                        RootKind::Circle => {
+                            self.each(roots::circle(a, b, c, slack), each, x, slack, left, offer)
                         }
-                        accepted += self.block(body, x, slack, left, offer);
-                    }
+                        RootKind::Quadratic => {
+                            self.each(roots::quadratic(a, b, c, slack), each, x, slack, left, offer)
+                        }
+                        RootKind::Conic => {
+                            self.each(conic([a, b, c, d, e, f], slack), each, x, slack, left, offer)
+                        }
+                        RootKind::Six => unreachable!("six angles have an item of their own"),
+                    };
                 }
                 Item::Six { args, out, body } => {
                     if !take(left, SIX_ROOTS) {
@@ -208,15 +238,47 @@ impl Bytecode {
                     let found = self.block(first, x, slack, left, offer);
                     accepted += if found > 0 { found } else { self.block(otherwise, x, slack, left, offer) };
                 }
-                Item::Emit { from, to } => {
-                    let mut candidate = [[0.0; 2]; MAX_JOINTS];
-                    let pairs = &self.emitted[*from as usize..*to as usize];
-                    for (value, [a, b]) in candidate.iter_mut().zip(pairs) {
-                        *value = [x[at(*a)], x[at(*b)]];
+                Item::Offer { from, to, misses } => {
+                    let registers = &self.offered[*from as usize..*to as usize];
+                    let mut candidate = Candidate {
+                        steps: [[0.0; 2]; MAX_JOINTS],
+                        values: [0.0; MAX_JOINTS],
+                        misses: misses.map(|i| x[at(i)]),
+                    };
+                    for (variable, [a, b, value]) in registers.iter().enumerate() {
+                        candidate.steps[variable] = [x[at(*a)], x[at(*b)]];
+                        candidate.values[variable] = x[at(*value)];
                     }
-                    accepted += usize::from(offer(&candidate[..pairs.len()]));
+                    accepted += usize::from(offer(&candidate));
                 }
             }
+        }
+        accepted
+    }
+}
+
+impl Bytecode {
+    /// The body of a loop for each root.
+    fn each<const N: usize, const R: usize>(
+        &self,
+        roots: Roots<R>,
+        (body, out, outputs): (&[Item], [u16; 2], u8),
+        x: &mut [f64; N],
+        slack: f64,
+        left: &mut u32,
+        offer: &mut impl FnMut(&Candidate) -> bool,
+    ) -> usize {
+        let mut accepted = 0;
+        for i in 0..roots.count() {
+            if roots.free && accepted > 0 || !take(left, 1) {
+                break;
+            }
+            let root = roots.get(i);
+            x[usize::from(out[0]) & (N - 1)] = root[0];
+            if outputs > 1 {
+                x[usize::from(out[1]) & (N - 1)] = root[1];
+            }
+            accepted += self.block(body, x, slack, left, offer);
         }
         accepted
     }
@@ -225,7 +287,7 @@ impl Bytecode {
 struct Translator<'p> {
     program: &'p Program,
     steps: Vec<Step>,
-    emitted: Vec<[u16; 2]>,
+    offered: Vec<[u16; 3]>,
     constants: Vec<u64>,
     first_constant: usize,
     first_name: usize,
@@ -284,18 +346,20 @@ impl Translator<'_> {
                     Some(Item::Fallback { first: self.block(first), otherwise: self.block(otherwise) })
                 }
                 Stmt::Emit(values) => {
-                    let zero = self.constant(0);
-                    let pairs: Vec<[u16; 2]> = values
-                        .iter()
-                        .map(|v| match *v {
-                            Value::Angle(c, s) => [self.value(c, &mut t), self.value(s, &mut t)],
-                            Value::Length(x) => [self.value(x, &mut t), zero],
-                        })
-                        .collect();
+                    let (zero, far) = (self.constant(0), self.constant(f64::INFINITY.to_bits()));
+                    let registers = values.iter().map(|v| self.steps_of(*v, zero, &mut t)).collect();
                     self.flush(from, &mut items);
-                    let from = self.emitted.len() as u32;
-                    self.emitted.extend(pairs);
-                    Some(Item::Emit { from, to: self.emitted.len() as u32 })
+                    Some(self.offer(registers, [far; 2]))
+                }
+                Stmt::Offer { values, angles, misses } => {
+                    let mut registers = Vec::new();
+                    for (value, angle) in values.iter().zip(angles) {
+                        let angle = self.value(*angle, &mut t);
+                        registers.push(self.steps_of(*value, angle, &mut t));
+                    }
+                    let misses = misses.map(|e| self.value(e, &mut t));
+                    self.flush(from, &mut items);
+                    Some(self.offer(registers, misses))
                 }
             };
             if item.is_none() {
@@ -304,6 +368,20 @@ impl Translator<'_> {
             items.extend(item);
         }
         items
+    }
+
+    /// Registers of the step of a variable and of its value.
+    fn steps_of(&mut self, value: Value, angle: u16, t: &mut Temporaries) -> [u16; 3] {
+        match value {
+            Value::Angle(c, s) => [self.value(c, t), self.value(s, t), angle],
+            Value::Length(x) => [self.value(x, t), self.constant(0), angle],
+        }
+    }
+
+    fn offer(&mut self, registers: Vec<[u16; 3]>, misses: [u16; 2]) -> Item {
+        let from = self.offered.len() as u32;
+        self.offered.extend(registers);
+        Item::Offer { from, to: self.offered.len() as u32, misses }
     }
 
     /// Makes the steps since `from` part of the item list, joined to a run that they continue.
@@ -343,6 +421,8 @@ impl Translator<'_> {
                 let a = self.value(a, t);
                 let op = match f {
                     Unary::Neg => Op::Neg,
+                    Unary::Opposite => Op::Opposite,
+                    Unary::Mirrored => Op::Mirrored,
                     Unary::Sqrt => Op::Sqrt,
                     Unary::Sin => Op::Sin,
                     Unary::Cos => Op::Cos,
@@ -358,6 +438,7 @@ impl Translator<'_> {
                     Binary::Div => Op::Div,
                     Binary::Min => Op::Min,
                     Binary::Max => Op::Max,
+                    Binary::AngleOf => Op::AngleOf,
                 };
                 (op, a, b)
             }

@@ -85,7 +85,7 @@ impl Run<'_> {
                         self.block(otherwise);
                     }
                 }
-                Stmt::Emit(values) => {
+                Stmt::Emit(values) | Stmt::Offer { values, .. } => {
                     let mut steps = [[0.0; 2]; MAX_JOINTS];
                     for (step, value) in steps.iter_mut().zip(values) {
                         *step = match *value {

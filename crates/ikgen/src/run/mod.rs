@@ -6,7 +6,7 @@ pub mod interpreter;
 mod solver;
 mod true_chain;
 
-pub use bytecode::{Bytecode, TooLarge};
+pub use bytecode::{Bytecode, Candidate, TooLarge};
 pub use solver::{Engine, LoadError, Solver};
 pub use true_chain::TrueChain;
 

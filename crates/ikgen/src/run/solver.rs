@@ -4,9 +4,9 @@ use robotc_core::Pose;
 use robotc_core::ik::{IkSolutions, InverseKinematics};
 use robotc_core::model::SerialChain;
 
-use super::{Bytecode, TooLarge, TrueChain, frame, interpreter};
+use super::{Bytecode, Candidate, TooLarge, TrueChain, frame, interpreter};
 use crate::ir::{Program, TextError};
-use crate::kernel::candidate::{MOST_MISSES, WIDER};
+use crate::kernel::candidate::{MOST_MISSES, WIDER, is_exact};
 use crate::kernel::chain::{Frame, MAX_JOINTS};
 
 /// What runs the program.
@@ -67,7 +67,7 @@ impl Solver {
             held[*v] = true;
         }
         Ok(Self {
-            code: Bytecode::new(&program)?,
+            code: Bytecode::for_chain(&program, &true_chain)?,
             program,
             chain: true_chain,
             engine: Engine::Bytecode,
@@ -107,34 +107,60 @@ impl Solver {
     }
 
     fn attempt(&self, base_from_tip: &Frame, free: &[f64], slack: f64, out: &mut IkSolutions) -> usize {
+        let n = self.program.variables;
         let mut misses = 0;
-        let mut offer = |steps: &[[f64; 2]]| {
-            let right = misses < MOST_MISSES && self.accept(base_from_tip, free, steps, out);
-            misses += usize::from(!right);
-            right
-        };
         match self.engine {
-            Engine::Bytecode => self.code.run(base_from_tip, free, slack, &mut offer),
-            Engine::Interpreter => interpreter::run(&self.program, base_from_tip, free, slack, &mut offer),
+            Engine::Bytecode => self.code.run(base_from_tip, free, slack, &mut |candidate: &Candidate| {
+                let right = misses < MOST_MISSES && self.keep(base_from_tip, candidate, out);
+                misses += usize::from(!right);
+                right
+            }),
+            Engine::Interpreter => {
+                interpreter::run(&self.program, base_from_tip, free, slack, &mut |steps| {
+                    let mut values = [0.0; MAX_JOINTS];
+                    for (variable, value) in self.program.free.iter().zip(free) {
+                        values[*variable] = *value;
+                    }
+                    let right =
+                        misses < MOST_MISSES && self.settle(base_from_tip, steps, &mut values[..n], out);
+                    misses += usize::from(!right);
+                    right
+                })
+            }
         }
     }
 
     /// Keeps a candidate if it is right and new; says whether it is right.
-    fn accept(&self, base_from_tip: &Frame, free: &[f64], steps: &[[f64; 2]], out: &mut IkSolutions) -> bool {
+    fn keep(&self, base_from_tip: &Frame, candidate: &Candidate, out: &mut IkSolutions) -> bool {
         let n = self.program.variables;
-        let arm = self.chain.arm(&self.held[..n]);
-        let mut values = [0.0; MAX_JOINTS];
-        for (variable, value) in self.program.free.iter().zip(free) {
-            values[*variable] = *value;
+        let mut values = candidate.values;
+        if !is_exact(candidate.misses) {
+            return self.settle(base_from_tip, &candidate.steps[..n], &mut values[..n], out);
         }
-        let values = &mut values[..n];
-        if !arm.settle(base_from_tip, steps, values) {
-            return false;
+        self.push(&values[..n], out);
+        true
+    }
+
+    /// As [`keep`](Self::keep), for a candidate of which nothing is known yet; `values` holds the given ones.
+    fn settle(
+        &self,
+        base_from_tip: &Frame,
+        steps: &[[f64; 2]],
+        values: &mut [f64],
+        out: &mut IkSolutions,
+    ) -> bool {
+        let right = self.chain.arm(&self.held[..values.len()]).settle(base_from_tip, steps, values);
+        if right {
+            self.push(values, out);
         }
+        right
+    }
+
+    fn push(&self, values: &[f64], out: &mut IkSolutions) {
+        let arm = self.chain.arm(&self.held[..values.len()]);
         if !out.iter().any(|other| arm.same(values, other)) {
             out.push(values);
         }
-        true
     }
 }
 

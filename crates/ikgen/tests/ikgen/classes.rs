@@ -3,7 +3,6 @@
 use robotc_core::Seed;
 use robotc_core::ik::{IkSolutions, InverseKinematics};
 use robotc_ikgen::report::{ProofOptions, poses, prove};
-use robotc_ikgen::run::Engine;
 use robotc_ikgen::{Options, Solver, check, compile};
 
 use crate::arms;
@@ -92,24 +91,6 @@ fn a_program_serves_a_recalibrated_chain() {
     let report = robotc_ikgen::report::prove_set(&measured, &solver, set, &|| 0.0);
     assert_eq!(report.wrong, 0);
     assert!(report.solved >= 198, "{report:?}");
-}
-
-#[test]
-fn interpreter_and_bytecode_agree_to_the_bit() {
-    for chain in arms::all() {
-        let compiled = compile(&chain, &Options::default()).unwrap();
-        let fast = compiled.solver();
-        let slow = compiled.solver().with_engine(Engine::Interpreter);
-        let (mut a, mut b) = (IkSolutions::new(), IkSolutions::new());
-        for set in poses::sets(&chain, &compiled.free, 40, Seed::new(8)) {
-            for vector in &set.vectors {
-                let free: Vec<f64> = compiled.free.iter().map(|v| vector[*v]).collect();
-                fast.solve(&chain.forward(vector), &free, &mut a);
-                slow.solve(&chain.forward(vector), &free, &mut b);
-                assert_eq!(a, b, "{} {}", chain.name, set.name);
-            }
-        }
-    }
 }
 
 #[test]

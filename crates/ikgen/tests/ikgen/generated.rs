@@ -1,94 +1,168 @@
-//! Generated Rust, compiled by the real compiler with warnings denied, against the bytecode.
+//! One corpus of poses on everything that runs a program: reference interpreter, bytecode, Rust with and without `std`, C.
+//!
+//! The sources are compiled by the real compilers with warnings denied.
 
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use robotc_core::Seed;
 use robotc_core::ik::{IkSolutions, InverseKinematics};
-use robotc_ikgen::backend::RustOptions;
+use robotc_ikgen::backend::{CError, RustOptions};
 use robotc_ikgen::report::poses;
-use robotc_ikgen::{Compiled, Options, compile};
+use robotc_ikgen::run::Engine;
+use robotc_ikgen::{Compiled, Options, Solver, compile};
 
 use crate::{arms, golden};
 
+/// Where solutions fall together a last place of difference moves them by the square root of it.
+const NEAR: f64 = 1e-6;
+
+/// The answers to one pose, in order.
+type Answers = Vec<Vec<f64>>;
+
 #[test]
-fn generated_rust_gives_the_same_solutions() {
+fn every_back_end_gives_the_same_solutions() {
     let folder = tempfile::tempdir().unwrap();
     let compiled: Vec<Compiled> =
         arms::all().iter().map(|c| compile(c, &Options::default()).unwrap()).collect();
+    let (corpus, expected) = corpus(&compiled);
+    std::fs::write(folder.path().join("corpus"), &corpus).unwrap();
 
-    // Without std: a library that must build for `core` alone.
-    let mut library = String::from("#![no_std]\n");
-    let mut program = String::from(
-        "use std::io::Write as _;\n\nfn main() {\n    let mut out = std::io::stdout().lock();\n",
-    );
-    let mut modules = String::new();
-    let mut expected = String::new();
-    for c in &compiled {
-        let name = &c.chain().name;
-        let core = c.rust_source(&RustOptions { std: false });
-        let std = c.rust_source(&RustOptions { std: true });
-        let most = if c.class.contains("general,") { 100_000 } else { 50_000 };
-        assert!(core.len() < most, "{name}: {} bytes", core.len());
-        std::fs::write(folder.path().join(format!("{name}.rs")), core).unwrap();
-        std::fs::write(folder.path().join(format!("{name}_std.rs")), std).unwrap();
-        let _ = writeln!(library, "pub mod {name};");
-        let _ = writeln!(modules, "mod {name}_std;");
-        trials(c, &mut program, &mut expected);
+    for (std, flavour) in [(true, "std"), (false, "core")] {
+        rust_programs(folder.path(), &compiled, std, flavour);
+        let found = answers(Command::new(folder.path().join(flavour)), folder.path());
+        compare(flavour, &corpus, &expected, &found);
     }
-    program += "}\n\n";
-    std::fs::write(folder.path().join("lib.rs"), library).unwrap();
-    std::fs::write(folder.path().join("main.rs"), program + &modules).unwrap();
-    rustc(folder.path(), &["lib.rs", "--crate-type=lib", "--emit=metadata"]);
-    rustc(folder.path(), &["main.rs", "-o", "main", "-Copt-level=1"]);
-    let run = Command::new(folder.path().join("main")).output().unwrap();
-    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
-    let found = String::from_utf8(run.stdout).unwrap();
-    for (i, (found, expected)) in found.lines().zip(expected.lines()).enumerate() {
-        assert_eq!(found, expected, "line {i}");
-    }
-    assert_eq!(found.lines().count(), expected.lines().count());
+    let Some(in_c) = c_program(folder.path(), &compiled) else {
+        println!("skipped: no C compiler");
+        return;
+    };
+    let found = answers(Command::new(folder.path().join("main_c")), folder.path());
+    let (lines, expected): (Vec<&str>, Vec<Answers>) = corpus
+        .lines()
+        .zip(expected)
+        .filter(|(l, _)| in_c.iter().any(|n| l.starts_with(&format!("{n} "))))
+        .unzip();
+    compare("C", &lines.join("\n"), &expected, &found);
 }
 
-/// Calls on the poses of all sets, and what the bytecode answers.
-fn trials(c: &Compiled, program: &mut String, expected: &mut String) {
-    let chain = c.chain();
-    let solver = c.solver();
-    let mut out = IkSolutions::new();
-    let name = &chain.name;
-    let _ = writeln!(
-        program,
-        "    let mut s = {name}_std::Solutions::new();\n    for (rotation, position, free) in ["
-    );
-    for set in poses::sets(chain, &c.free, 12, Seed::new(9)) {
-        for vector in &set.vectors {
-            let pose = chain.forward(vector);
-            let free: Vec<f64> = c.free.iter().map(|v| vector[*v]).collect();
-            let m = pose.rotation.to_rotation_matrix();
-            let rows: Vec<[f64; 3]> = (0..3).map(|i| [m[(i, 0)], m[(i, 1)], m[(i, 2)]]).collect();
-            let position: [f64; 3] = pose.translation.vector.into();
-            let _ = writeln!(program, "        ({rows:?}, {position:?}, {free:?} as [f64; {}]),", free.len());
-            solver.solve(&pose, &free, &mut out);
-            for values in out.iter().take(16) {
-                let bits: Vec<String> = values.iter().map(|x| format!("{:016x}", x.to_bits())).collect();
-                let _ = writeln!(expected, "{name} {}", bits.join(" "));
+/// A line for each pose: the arm, the twelve numbers of the pose, the given values; and what the bytecode answers.
+fn corpus(compiled: &[Compiled]) -> (String, Vec<Answers>) {
+    let (mut text, mut expected) = (String::new(), Vec::new());
+    for c in compiled {
+        let (chain, solver) = (c.chain(), c.solver());
+        let reference = c.solver().with_engine(Engine::Interpreter);
+        for set in poses::sets(chain, &c.free, 12, Seed::new(9)) {
+            for vector in &set.vectors {
+                let pose = chain.forward(vector);
+                let free: Vec<f64> = c.free.iter().map(|v| vector[*v]).collect();
+                let r = pose.rotation.to_rotation_matrix();
+                let rows = (0..9).map(|i| r[(i / 3, i % 3)]);
+                let numbers = rows.chain(pose.translation.vector.iter().copied()).chain(free.iter().copied());
+                let _ = write!(text, "{}", chain.name);
+                text.extend(numbers.map(|x| format!(" {:016x}", x.to_bits())));
+                text.push('\n');
+                let solve = |solver: &Solver| -> Answers {
+                    let mut out = IkSolutions::new();
+                    solver.solve(&pose, &free, &mut out);
+                    out.iter().take(16).map(<[f64]>::to_vec).collect()
+                };
+                expected.push(solve(&solver));
+                let what = format!("the reference at {} {vector:?}", set.name);
+                compare(&what, &chain.name, &[solve(&reference)], &expected[expected.len() - 1..]);
             }
-            let _ = writeln!(expected, "{name} {}", out.len().min(16));
         }
     }
-    let _ = writeln!(
-        program,
-        "    ] {{\n        {name}_std::solve(&{name}_std::Frame {{ rotation, position }}, &free, &mut s);\n        \
-         for v in s.as_slice() {{\n            let bits: Vec<String> = v.iter().map(|x| format!(\"{{:016x}}\", x.to_bits())).collect();\n            \
-         writeln!(out, \"{name} {{}}\", bits.join(\" \")).unwrap();\n        }}\n        \
-         writeln!(out, \"{name} {{}}\", s.as_slice().len()).unwrap();\n    }}"
+    (text, expected)
+}
+
+/// Runs a program on the corpus: for each pose a line with the number of answers, then one for each.
+fn answers(mut program: Command, folder: &Path) -> Vec<Answers> {
+    let corpus = std::fs::File::open(folder.join("corpus")).unwrap();
+    let run = program.stdin(corpus).stderr(Stdio::inherit()).output().unwrap();
+    assert!(run.status.success());
+    let text = String::from_utf8(run.stdout).unwrap();
+    let mut lines = text.lines();
+    let mut all = Vec::new();
+    while let Some(count) = lines.next() {
+        let number = |word: &str| f64::from_bits(u64::from_str_radix(word, 16).unwrap());
+        let answer = |line: &str| line.split_whitespace().map(number).collect();
+        all.push(lines.by_ref().take(count.parse().unwrap()).map(answer).collect());
+    }
+    all
+}
+
+fn compare(what: &str, corpus: &str, expected: &[Answers], found: &[Answers]) {
+    assert_eq!(found.len(), expected.len(), "{what}");
+    for ((line, expected), found) in corpus.lines().zip(expected).zip(found) {
+        assert_eq!(found.len(), expected.len(), "{what}: {line}");
+        for (a, b) in found.iter().flatten().zip(expected.iter().flatten()) {
+            assert!((a - b).abs() < NEAR, "{what}: {a} is not {b}: {line}");
+        }
+    }
+}
+
+/// Compiles all solvers of one flavour into a program, and runs the tests that the files carry.
+fn rust_programs(folder: &Path, compiled: &[Compiled], std: bool, flavour: &str) {
+    let mut modules = String::new();
+    let mut arms = String::new();
+    for c in compiled {
+        let name = &c.chain().name;
+        let source = c.rust_source(&RustOptions { std });
+        let most = if c.class.contains("general,") { 100_000 } else { 70_000 };
+        assert!(source.len() < most, "{name}: {} bytes", source.len());
+        let file = folder.join(format!("{name}_{flavour}.rs"));
+        std::fs::write(&file, source).unwrap();
+        let _ = writeln!(modules, "#[path = {:?}]\npub mod {name};", file.display().to_string());
+        let _ = writeln!(
+            arms,
+            "            {name:?} => {{\n                let at = |i: usize| [x[i], x[i + 1], x[i + 2]];\n                \
+             let pose = {name}::Frame {{ rotation: [at(0), at(3), at(6)], position: at(9) }};\n                \
+             let mut found = {name}::Solutions::new();\n                \
+             {name}::solve(&pose, x[12..].try_into().unwrap(), &mut found);\n                \
+             found.as_slice().iter().map(|v| v.to_vec()).collect::<Vec<_>>()\n            }}"
+        );
+    }
+    let library = format!("#![cfg_attr(not(test), no_std)]\n{modules}");
+    let program = format!(
+        "fn main() {{\n    for line in std::io::stdin().lines() {{\n        let line = line.unwrap();\n        \
+         let mut words = line.split_whitespace();\n        let name = words.next().unwrap();\n        \
+         let x: Vec<f64> = words.map(|w| f64::from_bits(u64::from_str_radix(w, 16).unwrap())).collect();\n        \
+         let found = match name {{\n{arms}            _ => panic!(),\n        }};\n        \
+         println!(\"{{}}\", found.len());\n        for v in found {{\n            \
+         let bits: Vec<String> = v.iter().map(|x| format!(\"{{:016x}}\", x.to_bits())).collect();\n            \
+         println!(\"{{}}\", bits.join(\" \"));\n        }}\n    }}\n}}\n{modules}"
     );
+    std::fs::write(folder.join("main.rs"), program).unwrap();
+    rustc(folder, &["main.rs", "-o", flavour, "-Copt-level=1"]);
+    if !std {
+        std::fs::write(folder.join("lib.rs"), library).unwrap();
+        rustc(folder, &["lib.rs", "--crate-type=lib", "--emit=metadata"]);
+        rustc(folder, &["lib.rs", "--test", "-o", "own_tests", "-Copt-level=1"]);
+        let tests = Command::new(folder.join("own_tests")).output().unwrap();
+        assert!(tests.status.success(), "{}", String::from_utf8_lossy(&tests.stdout));
+        for target in bare_metal() {
+            rustc(folder, &["lib.rs", "--crate-type=lib", "--emit=obj", "-o", "bare.o", "--target", &target]);
+        }
+    }
+}
+
+/// Installed targets without an operating system.
+fn bare_metal() -> Vec<String> {
+    let output = Command::new(rustc_path()).args(["--print", "sysroot"]).output().unwrap();
+    let sysroot = String::from_utf8(output.stdout).unwrap();
+    let targets = std::fs::read_dir(Path::new(sysroot.trim()).join("lib/rustlib"));
+    let names = targets.into_iter().flatten().flatten().map(|e| e.file_name().to_string_lossy().into_owned());
+    names.filter(|name| name.contains("-none")).collect()
+}
+
+fn rustc_path() -> String {
+    std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into())
 }
 
 fn rustc(folder: &Path, arguments: &[&str]) {
-    let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
-    let output = Command::new(rustc)
+    let output = Command::new(rustc_path())
         .current_dir(folder)
         .args(["--edition=2024", "-Dwarnings", "--color=never"])
         .args(arguments)
@@ -97,8 +171,101 @@ fn rustc(folder: &Path, arguments: &[&str]) {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
+const C_MAIN: &str = r#"
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+static int numbers(double *out)
+{
+    int n = 0;
+    uint64_t bits;
+    while (scanf("%" SCNx64, &bits) == 1) {
+        memcpy(&out[n++], &bits, sizeof bits);
+        if (getchar() == '\n') break;
+    }
+    return n;
+}
+
+static void show(const double *values, int n)
+{
+    int i;
+    uint64_t bits;
+    for (i = 0; i < n; i++) {
+        memcpy(&bits, &values[i], sizeof bits);
+        printf("%016" PRIx64 " ", bits);
+    }
+    printf("\n");
+}
+
+int main(void)
+{
+    char name[64];
+    double x[32];
+    while (scanf("%63s", name) == 1) {
+        numbers(x);
+        ARMS
+    }
+    return 0;
+}
+"#;
+
+/// Compiles all solvers that have a C form into a program; returns their names, or nothing without a compiler.
+fn c_program(folder: &Path, compiled: &[Compiled]) -> Option<Vec<String>> {
+    let compilers = ["cc", "c++"];
+    if compilers.iter().any(|c| Command::new(c).arg("--version").output().is_err()) {
+        return None;
+    }
+    let (mut names, mut main, mut arms) = (Vec::new(), String::new(), String::new());
+    let strict = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-ffp-contract=off", "-O1"];
+    for c in compiled {
+        let name = c.chain().name.clone();
+        let source = match c.c_source(&name) {
+            Err(CError::Six) => continue,
+            other => other.unwrap(),
+        };
+        std::fs::write(folder.join(format!("{name}.h")), source.header).unwrap();
+        std::fs::write(folder.join(format!("{name}.c")), source.source).unwrap();
+        let _ = writeln!(main, "#include \"{name}.h\"");
+        let _ = writeln!(
+            arms,
+            "if (!strcmp(name, \"{name}\")) {{\n            {name}_frame pose;\n            {name}_solutions found;\n            \
+             int i;\n            memcpy(pose.rotation, x, sizeof pose.rotation);\n            memcpy(pose.position, x + 9, sizeof pose.position);\n            \
+             {name}_solve(&pose, x + 12, &found);\n            printf(\"%d\\n\", found.count);\n            \
+             for (i = 0; i < found.count; i++) show(found.values[i], {upper}_VARIABLES);\n        }}",
+            upper = name.to_uppercase()
+        );
+        let file = format!("{name}.c");
+        let object = format!("{name}.o");
+        run(folder, "cc", &[&strict[..], &["-std=c99", "-c", &file, "-o", &object]].concat());
+        names.push(name);
+    }
+    // One of them without the C library's functions, and as C++.
+    let first = format!("{}.c", names[0]);
+    run(
+        folder,
+        "cc",
+        &[&strict[..], &["-std=c99", "-DIK_FREESTANDING", "-c", &first, "-o", "freestanding.o"]].concat(),
+    );
+    run(folder, "c++", &[&strict[..], &["-std=c++11", "-x", "c++", "-c", &first, "-o", "cpp.o"]].concat());
+    std::fs::write(folder.join("main.c"), main + &C_MAIN.replace("ARMS", &arms)).unwrap();
+    let objects: Vec<String> = names.iter().map(|n| format!("{n}.o")).collect();
+    let objects: Vec<&str> = objects.iter().map(String::as_str).collect();
+    run(folder, "cc", &[&strict[..], &["-std=c99", "main.c", "-o", "main_c"], &objects, &["-lm"]].concat());
+    Some(names)
+}
+
+fn run(folder: &Path, compiler: &str, arguments: &[&str]) {
+    let output = Command::new(compiler).current_dir(folder).args(arguments).output().unwrap();
+    assert!(output.status.success(), "{compiler} {arguments:?}\n{}", String::from_utf8_lossy(&output.stderr));
+}
+
 #[test]
-fn generated_rust_is_as_recorded() {
+fn generated_sources_are_as_recorded() {
     let compiled = compile(&arms::kr6(), &Options::default()).unwrap();
     golden::check("generated/kr6.rs", &compiled.rust_source(&RustOptions::default()));
+    let c = compiled.c_source("kr6").unwrap();
+    golden::check("generated/kr6.h", &c.header);
+    golden::check("generated/kr6.c", &c.source);
+    assert!(matches!(compiled.c_source("kr-6"), Err(CError::Name(_))));
 }

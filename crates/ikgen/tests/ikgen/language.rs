@@ -84,7 +84,7 @@ fn programs_that_would_run_forever_end() {
     let program = Program::from_text(&text).unwrap();
     let pose = Frame { rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], position: [0.0; 3] };
     let mut offered = [0, 0];
-    Bytecode::new(&program).unwrap().run(&pose, &[], 0.0, &mut |_: &[[f64; 2]]| {
+    Bytecode::new(&program).unwrap().run(&pose, &[], 0.0, &mut |_| {
         offered[0] += 1;
         false
     });

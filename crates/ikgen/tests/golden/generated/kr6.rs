@@ -7,8 +7,8 @@
 #![allow(dead_code, unused_imports, unused_variables, clippy::all)]
 
 pub use chain::{Frame, Link};
-use candidate::{Arm, MOST_MISSES, WIDER};
-use math::{cos_sin, sqrt};
+use candidate::{Arm, MOST_MISSES, WIDER, is_exact};
+use math::{angle_of, cos_sin, mirrored, opposite, sqrt};
 use roots::*;
 
 /// Number of variables.
@@ -150,7 +150,7 @@ pub fn forward(values: &[f64; VARIABLES]) -> Frame {
 
 /// All solutions for a pose of the chain as described, given the values of the variables in [`FREE`].
 pub fn solve(base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {
-    solve_on(&DESCRIBED, base_from_tip, free, out);
+    solve_with(&DESCRIBED, true, base_from_tip, free, out);
 }
 
 fn arm(chain: &Chain) -> Arm<'_> {
@@ -161,20 +161,21 @@ fn arm(chain: &Chain) -> Arm<'_> {
 struct Sink<'a> {
     arm: Arm<'a>,
     base_from_tip: &'a Frame,
-    free: &'a [f64; FREE.len()],
     out: &'a mut Solutions,
     accepted: usize,
     misses: usize,
+    /// The chain is the described one, for which candidates come with their misses.
+    described: bool,
 }
 
 impl Sink<'_> {
-    /// Keeps a candidate if it is right and new.
-    fn offer(&mut self, steps: [[f64; 2]; VARIABLES]) {
-        let mut values = [0.0; VARIABLES];
-        for (variable, value) in FREE.iter().zip(self.free) {
-            values[*variable] = *value;
+    /// Keeps a candidate if it is right and new: the step of each variable, its value, and the squares of how far the
+    /// described chain is from the pose, rotation and position.
+    fn offer(&mut self, steps: [[f64; 2]; VARIABLES], mut values: [f64; VARIABLES], misses: [f64; 2]) {
+        if self.misses >= MOST_MISSES {
+            return;
         }
-        if self.misses >= MOST_MISSES || !self.arm.settle(self.base_from_tip, &steps, &mut values) {
+        if !(self.described && is_exact(misses)) && !self.arm.settle(self.base_from_tip, &steps, &mut values) {
             self.misses += 1;
             return;
         }
@@ -205,8 +206,12 @@ fn max(a: f64, b: f64) -> f64 {
 
 /// As [`solve`], for a chain whose constants are near those of the described one.
 pub fn solve_on(chain: &Chain, base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {
+    solve_with(chain, false, base_from_tip, free, out);
+}
+
+fn solve_with(chain: &Chain, described: bool, base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {
     out.len = 0;
-    let mut sink = Sink { arm: arm(chain), base_from_tip, free, out, accepted: 0, misses: 0 };
+    let mut sink = Sink { arm: arm(chain), base_from_tip, out, accepted: 0, misses: 0, described };
     attempt(base_from_tip, free, SLACK, &mut sink);
     for slack in WIDER {
         if sink.accepted == 0 && slack > SLACK {
@@ -232,6 +237,9 @@ fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &m
     let t6 = -0.014699999999999963 + -0.5 * (0.0006250000000000001 + (t1 * t1 + t0 * t0 + t4 * t4));
     let t7 = t1 * 0.025;
     let t8 = t0 * 0.025;
+    let t9 = px - r02 * 0.07999999999999996;
+    let t10 = py - r12 * 0.07999999999999996;
+    let t11 = pz - r22 * 0.07999999999999996;
     let roots1 = circle(-t0, -t1, 0.0, slack);
     let before1 = sink.accepted;
     for i in 0..roots1.count() {
@@ -239,35 +247,46 @@ fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &m
             break;
         }
         let [c1, s1] = roots1.get(i);
-        let t11 = -0.025 + t1 * c1 - t0 * s1;
-        let t12 = r12 * s1;
-        let t13 = r02 * c1;
-        let t14 = t12 - t13;
-        let t15 = t13 - t12;
-        let t16 = r12 * c1 + r02 * s1;
-        let t17 = t16 * t16;
-        let t18 = c1 * r11 + s1 * r01;
-        let t19 = s1 * r11;
-        let t20 = c1 * r01;
-        let t21 = t19 - t20;
-        let t22 = t20 - t19;
-        let roots2 = circle(-0.45499999999999996 * t11, t5, t6 + c1 * t7 - s1 * t8, slack);
+        let t14 = -0.025 + t1 * c1 - t0 * s1;
+        let t15 = r12 * s1;
+        let t16 = r02 * c1;
+        let t17 = t15 - t16;
+        let t18 = t16 - t15;
+        let t19 = r12 * c1 + r02 * s1;
+        let t20 = t19 * t19;
+        let t21 = c1 * r11 + s1 * r01;
+        let t22 = s1 * r11;
+        let t23 = c1 * r01;
+        let t24 = t22 - t23;
+        let t25 = t23 - t22;
+        let t1_2 = angle_of(s1, c1);
+        let t27 = 0.025 * c1;
+        let t28 = 0.025 * s1;
+        let roots2 = circle(-0.45499999999999996 * t14, t5, t6 + c1 * t7 - s1 * t8, slack);
         let before2 = sink.accepted;
         for i in 0..roots2.count() {
             if roots2.free && sink.accepted > before2 {
                 break;
             }
             let [c2, s2] = roots2.get(i);
-            let t25 = -0.45499999999999996 + (t11 * c2 + t3 * s2);
-            let t26 = t4 * c2 + t11 * s2;
-            let t27 = r22 * s2 + c2 * t14;
-            let t28 = r22 * c2 + s2 * t15;
-            let t29 = c2 * r21 - s2 * t21;
-            let t30 = s2 * r21;
-            let t31 = c2 * t22;
-            let t32 = t30 - t31;
-            let t33 = t31 - t30;
-            let roots3 = align(0.42000000000000004 * t25 + 0.034999999999999976 * t26, t25 * 0.034999999999999976 - 0.42000000000000004 * t26, slack);
+            let t31 = -0.45499999999999996 + (t14 * c2 + t3 * s2);
+            let t32 = t4 * c2 + t14 * s2;
+            let t33 = r22 * s2 + c2 * t17;
+            let t34 = r22 * c2 + s2 * t18;
+            let t35 = c2 * r21 - s2 * t24;
+            let t36 = s2 * r21;
+            let t37 = c2 * t25;
+            let t38 = t36 - t37;
+            let t39 = t37 - t36;
+            let t2_2 = angle_of(s2, c2);
+            let t7_2 = c1 * c2;
+            let t8_2 = c1 * s2;
+            let t20_2 = s1 * s2;
+            let t21_2 = s1 * c2;
+            let t45 = 0.45499999999999996 * t7_2 + t27;
+            let t46 = 0.45499999999999996 * t21_2 + t28;
+            let t47 = 0.4 - s2 * 0.45499999999999996;
+            let roots3 = align(0.42000000000000004 * t31 + 0.034999999999999976 * t32, t31 * 0.034999999999999976 - 0.42000000000000004 * t32, slack);
             let before3 = sink.accepted;
             for i in 0..roots3.count() {
                 if roots3.free && sink.accepted > before3 {
@@ -276,39 +295,104 @@ fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &m
                 let [c3, s3] = roots3.get(i);
                 // what is left of the rotation for the wrist
                 // the angle between the first and the last axis of the wrist
-                let t36 = s3 * t27 - c3 * t28;
-                let t37 = c3 * t29 - s3 * t32;
-                let t38 = s3 * t29 - c3 * t33;
-                let roots4 = mirror(-(t27 * c3 + s3 * t28), sqrt(t36 * t36 + t17), slack);
+                let t50 = s3 * t33 - c3 * t34;
+                let t51 = c3 * t35 - s3 * t38;
+                let t52 = s3 * t35 - c3 * t39;
+                let t3_2 = angle_of(s3, c3);
+                let t54 = t7_2 * c3 - s3 * t8_2;
+                let t12_2 = c3 * t8_2 + t7_2 * s3;
+                let t22_2 = s3 * t20_2 - t21_2 * c3;
+                let t26_2 = c3 * t20_2 + t21_2 * s3;
+                let t58 = s2 * c3 + c2 * s3;
+                let t59 = c2 * c3;
+                let t60 = s2 * s3;
+                let t41_2 = t59 - t60;
+                let t62 = 0.42000000000000004 * t54 - -0.034999999999999976 * t12_2 + t45 - t9;
+                let t63 = 0.42000000000000004 * t22_2 + -0.034999999999999976 * t26_2 - t46 - t10;
+                let t64 = -0.034999999999999976 * (t60 - t59) - 0.42000000000000004 * t58 + t47 - t11;
+                let t65 = t62 * t62 + t63 * t63 + t64 * t64;
+                let roots4 = half(-(t33 * c3 + s3 * t34), sqrt(t50 * t50 + t20), slack);
                 let before4 = sink.accepted;
                 for i in 0..roots4.count() {
                     if roots4.free && sink.accepted > before4 {
                         break;
                     }
                     let [c5, s5] = roots4.get(i);
-                    let t41 = s5 * t38;
-                    let roots5 = align(t36 * s5, -(t16 * s5), slack);
+                    let t68 = s5 * t52;
+                    let t5_2 = angle_of(s5, c5);
+                    let t70 = r02 * c5;
+                    let t71 = r02 * s5;
+                    let t72 = r12 * c5;
+                    let t73 = r12 * s5;
+                    let t74 = r22 * c5;
+                    let t75 = r22 * s5;
+                    let roots5 = align(t50 * s5, -(t19 * s5), slack);
                     let before5 = sink.accepted;
                     for i in 0..roots5.count() {
                         if roots5.free && sink.accepted > before5 {
                             break;
                         }
                         let [c4, s4] = roots5.get(i);
-                        let roots6 = align(c4 * t18 - s4 * t37, t41 - c5 * (c4 * t37 + t18 * s4), slack);
+                        let t4_2 = angle_of(s4, c4);
+                        let t79 = s1 * s4 + t12_2 * c4;
+                        let t15_2 = s1 * c4;
+                        let t16_2 = t12_2 * s4;
+                        let t82 = t15_2 - t16_2;
+                        let t27_2 = t26_2 * c4;
+                        let t28_2 = c1 * s4;
+                        let t85 = t27_2 - t28_2;
+                        let t31_2 = c1 * c4 + t26_2 * s4;
+                        let t87 = c4 * t41_2;
+                        let t88 = s4 * t41_2;
+                        let roots6 = align(c4 * t21 - s4 * t51, t68 - c5 * (c4 * t51 + s4 * t21), slack);
                         let before6 = sink.accepted;
                         for i in 0..roots6.count() {
                             if roots6.free && sink.accepted > before6 {
                                 break;
                             }
                             let [c6, s6] = roots6.get(i);
-                            sink.offer([
-                                [c1, s1],
-                                [c2, s2],
-                                [c3, s3],
-                                [c4, s4],
-                                [c5, s5],
-                                [c6, s6],
-                            ]);
+                            // the candidate: its angles, and how far it is from the pose
+                            let t6_2 = angle_of(s6, c6);
+                            let t92 = c6 * r00 + r01 * s6;
+                            let t11_2 = t54 - (t70 - s5 * t92);
+                            let t13_2 = t79 + (c5 * t92 + t71);
+                            let t14_2 = t11_2 * t11_2 + t13_2 * t13_2;
+                            let t17_2 = r01 * c6;
+                            let t18_2 = s6 * r00;
+                            let t19_2 = t82 - (t17_2 - t18_2);
+                            let t99 = c6 * r10 + r11 * s6;
+                            let t100 = t22_2 - (t72 - s5 * t99);
+                            let t25_2 = t100 * t100;
+                            let t29_2 = c5 * t99 + t73;
+                            let t30_2 = t85 - t29_2;
+                            let t32_2 = r11 * c6;
+                            let t33_2 = s6 * r10;
+                            let t106 = t31_2 - (t32_2 - t33_2);
+                            let t36_2 = c6 * r20 + r21 * s6;
+                            let t37_2 = t58 + (t74 - s5 * t36_2);
+                            let t38_2 = t37_2 * t37_2;
+                            let t110 = t87 + (c5 * t36_2 + t75);
+                            let t111 = t110 * t110;
+                            let t112 = r21 * c6;
+                            let t113 = s6 * r20;
+                            let t114 = t88 + (t112 - t113);
+                            sink.offer(
+                                [[c1, s1], [c2, s2], [c3, s3], [c4, s4], [c5, s5], [c6, s6]],
+                                [t1_2, t2_2, t3_2, t4_2, t5_2, t6_2],
+                                [1.1664 * (t111 + (t38_2 + (t25_2 + (t14_2 + t19_2 * t19_2) + t30_2 * t30_2 + t106 * t106)) + t114 * t114), t65],
+                            );
+                            if !((s5).abs() < 1e-11) {
+                                // the candidate: its angles, and how far it is from the pose
+                                let t115 = t16_2 - t15_2 - (t18_2 - t17_2);
+                                let t116 = t29_2 + (t28_2 - t27_2);
+                                let t117 = t31_2 + (t33_2 - t32_2);
+                                let t118 = t88 - (t113 - t112);
+                                sink.offer(
+                                    [[c1, s1], [c2, s2], [c3, s3], [-c4, -s4], [c5, -s5], [-c6, -s6]],
+                                    [t1_2, t2_2, t3_2, opposite(t4_2), mirrored(t5_2), opposite(t6_2)],
+                                    [1.1664 * (t111 + (t38_2 + (t25_2 + (t14_2 + t115 * t115) + t116 * t116 + t117 * t117)) + t118 * t118), t65],
+                                );
+                            }
                         }
                     }
                 }
@@ -322,8 +406,7 @@ mod sqrt {
 
     use super::math::product_rest;
 
-    /// Square root, correctly rounded except just below powers of four (there it may be the power of two); 0 for arguments that are
-    /// negative or below 1e-300.
+    /// Square root, correctly rounded; 0 for arguments that are negative or below 1e-300.
     pub fn sqrt(x: f64) -> f64 {
         if !(x > 1e-300) {
             return 0.0;
@@ -338,9 +421,12 @@ mod sqrt {
             inverse *= 1.5 - half * inverse * inverse;
         }
         let root = x * inverse;
-        // What is missing, with the square taken exactly.
-        let rest = (x - root * root) - product_rest(root, root);
-        root + 0.5 * inverse * rest
+        // What is missing, with squares taken exactly.
+        let rest = |root: f64| (x - root * root) - product_rest(root, root);
+        let root = root + 0.5 * inverse * rest(root);
+        // Just below powers of four the sum is half way between two numbers: the lower one is nearer.
+        let below = f64::from_bits(root.to_bits() - 1);
+        if rest(root) <= -root * (root - below) { below } else { root }
     }
 }
 
@@ -410,22 +496,26 @@ mod math {
             [0.718_829_999_621_624_5, -2.147_838_844_445_698_3e-17],
             [0.785_398_163_397_448_3, 3.061_616_997_868_383e-17],
         ];
+        /// What the angle of the octant is added to, its rest, and with which sign: beyond the diagonal, left, both.
+        const OCTANTS: [[f64; 3]; 4] = [
+            [0.0, 0.0, 1.0],
+            [FRAC_PI_2, 6.123_233_995_736_766e-17, -1.0],
+            [PI, 1.224_646_799_147_353_2e-16, -1.0],
+            [FRAC_PI_2, 6.123_233_995_736_766e-17, 1.0],
+        ];
         let (ax, ay) = (x.abs(), y.abs());
         let (large, small) = if ax > ay { (ax, ay) } else { (ay, ax) };
-        if large == 0.0 || !(large < f64::INFINITY) {
-            return 0.0;
-        }
         // Quotients of numbers near the ends of the range lose digits.
-        let scale = if large < 1e-280 {
-            1e200
-        } else if large > 1e280 {
-            1e-200
-        } else {
-            1.0
-        };
-        let (large, small) = (large * scale, small * scale);
+        if !(large > 1e-280 && large < 1e280) {
+            return match large {
+                _ if large == 0.0 || !(large < f64::INFINITY) => 0.0,
+                _ if large < 1.0 => atan2(y * 1e200, x * 1e200),
+                _ => atan2(y * 1e-200, x * 1e-200),
+            };
+        }
+        // No branch depends on the octant: it is as good as random.
         let ratio = small / large;
-        let k = if ratio < 0.125 { 0 } else { (ratio * 8.0 + 0.5) as usize };
+        let k = (ratio * 8.0 + 0.5) as usize * usize::from(ratio >= 0.125);
         let tangent = k as f64 * 0.125;
         let top = upper_half(large);
         let over = (small - tangent * top) - tangent * (large - top);
@@ -438,17 +528,65 @@ mod math {
         for d in [-15.0, 13.0, -11.0, 9.0, -7.0, 5.0, -3.0] {
             p = 1.0 / d + z * p;
         }
-        let (base, base_low, sign) = match (ay > ax, x < 0.0) {
-            (true, negative) => (FRAC_PI_2, 6.123_233_995_736_766e-17, if negative { 1.0 } else { -1.0 }),
-            (false, true) => (PI, 1.224_646_799_147_353_2e-16, -1.0),
-            (false, false) => (0.0, 0.0, 1.0),
-        };
+        let [base, base_low, sign] = OCTANTS[usize::from(ay > ax) + 2 * usize::from(x < 0.0)];
         let [table, table_low] = EIGHTHS[k];
         let coarse = base + sign * table;
         let fine = coarse + sign * t;
         let rest = (sign * table - (coarse - base)) + (sign * t - (fine - coarse));
         let angle = fine + (rest + (base_low + sign * (table_low + (t_low + t * z * p))));
         if y < 0.0 { -angle } else { angle }
+    }
+
+    /// Angle with this sine and cosine in (-pi, pi], within two places; faster than [`atan2`] as the point is on the unit circle.
+    ///
+    /// Folded to the first octant and turned back by the nearest of the angles with sine `k/16`; what is left is a small sine.
+    pub fn angle_of(sine: f64, cosine: f64) -> f64 {
+        use core::f64::consts::{FRAC_PI_2, PI};
+        /// Cosine and angle.
+        const SIXTEENTHS: [[f64; 2]; 12] = [
+            [1.0, 0.0],
+            [0.998_044_963_916_957, 0.062_540_761_796_491_39],
+            [0.992_156_741_649_221_5, 0.125_327_831_168_065_4],
+            [0.982_264_602_843_857, 0.188_616_386_175_404_1],
+            [0.968_245_836_551_854_3, 0.252_680_255_142_078_65],
+            [0.949_917_759_598_166_5, 0.317_823_703_927_880_73],
+            [0.927_024_810_886_957_9, 0.384_396_774_495_639_1],
+            [0.899_218_410_621_135, 0.452_816_594_744_925_6],
+            [0.866_025_403_784_438_6, 0.523_598_775_598_298_9],
+            [0.826_797_284_707_684_5, 0.597_406_416_645_350_2],
+            [0.780_624_749_799_799_8, 0.675_131_532_937_031_7],
+            [0.726_184_377_413_890_6, 0.758_040_765_426_236],
+        ];
+        /// What the angle of the octant is added to, and with which sign: beyond the diagonal, left, both.
+        const OCTANTS: [[f64; 2]; 4] = [[0.0, 1.0], [FRAC_PI_2, -1.0], [PI, -1.0], [FRAC_PI_2, 1.0]];
+        let (ac, as_) = (cosine.abs(), sine.abs());
+        let (large, small) = if ac > as_ { (ac, as_) } else { (as_, ac) };
+        // The cast gives 0 for what is not a number.
+        let k = (small * 16.0 + 0.5) as u32 as usize;
+        let k = if k > 11 { 11 } else { k };
+        let [cos, angle] = SIXTEENTHS[k];
+        let x = small * cos - large * (k as f64 * 0.0625);
+        let z = x * x;
+        let mut p = 945.0 / 42_240.0;
+        for coefficient in [105.0 / 3_456.0, 15.0 / 336.0, 3.0 / 40.0, 1.0 / 6.0] {
+            p = coefficient + z * p;
+        }
+        let octant = angle + (x + x * z * p);
+        let [base, sign] = OCTANTS[usize::from(as_ > ac) + 2 * usize::from(cosine < 0.0)];
+        let angle = base + sign * octant;
+        if sine < 0.0 { mirrored(angle) } else { angle }
+    }
+
+    /// The angle half a turn on; both in (-pi, pi].
+    pub fn opposite(angle: f64) -> f64 {
+        use core::f64::consts::PI;
+        let turned = if angle > 0.0 { angle - PI } else { angle + PI };
+        if turned > -PI { turned } else { PI }
+    }
+
+    /// The angle with the other sign; both in (-pi, pi].
+    pub fn mirrored(angle: f64) -> f64 {
+        if angle < core::f64::consts::PI { -angle } else { angle }
     }
 
     /// The number without the lower half of its digits.
@@ -485,25 +623,32 @@ mod roots {
         cos_sin(reversed * (core::f64::consts::TAU / 32.0))
     }
 
-    /// The roots of an equation, each `[cos, sin]` of an angle, or `[length, 0]`.
+    /// The roots of an equation, at most `N`, each `[cos, sin]` of an angle, or `[length, 0]`.
     #[derive(Clone, Copy, Debug)]
-    pub struct Roots {
-        items: [[f64; 2]; 4],
+    pub struct Roots<const N: usize> {
+        items: [[f64; 2]; N],
         len: usize,
         /// The unknown is free, or nearly so: later roots are tried only while none has led to a solution.
         pub free: bool,
     }
 
-    impl Roots {
+    impl<const N: usize> Roots<N> {
         /// No root.
-        pub const NONE: Roots = Roots { items: [[1.0, 0.0]; 4], len: 0, free: false };
+        pub const NONE: Self = Roots { items: [[1.0, 0.0]; N], len: 0, free: false };
 
         /// Any angle will do.
-        pub const ANY_ANGLE: Roots = Roots { items: [[1.0, 0.0]; 4], len: 0, free: true };
+        pub const ANY_ANGLE: Self = Roots { items: [[1.0, 0.0]; N], len: 0, free: true };
 
         /// How many roots there are.
         pub fn count(&self) -> usize {
             if self.free { self.len + REPRESENTATIVES } else { self.len }
+        }
+
+        /// The same, with room for more.
+        pub fn widened<const M: usize>(&self) -> Roots<M> {
+            let mut items = [[1.0, 0.0]; M];
+            items[..self.len].copy_from_slice(&self.items[..self.len]);
+            Roots { items, len: self.len, free: self.free }
         }
 
         /// One of them.
@@ -511,8 +656,9 @@ mod roots {
             if i < self.len { self.items[i] } else { representative(i - self.len) }
         }
 
-        fn push(&mut self, root: [f64; 2]) {
-            if self.len < 4 {
+        /// Adds one, if there is room.
+        pub fn push(&mut self, root: [f64; 2]) {
+            if self.len < N {
                 self.items[self.len] = root;
                 self.len += 1;
             }
@@ -520,7 +666,7 @@ mod roots {
     }
 
     /// The angle whose cosine and sine are proportional to `x` and `y`.
-    pub fn align(x: f64, y: f64, slack: f64) -> Roots {
+    pub fn align(x: f64, y: f64, slack: f64) -> Roots<1> {
         let n = sqrt(x * x + y * y);
         if !(x.abs() + y.abs() < f64::INFINITY) {
             return Roots::NONE;
@@ -535,7 +681,16 @@ mod roots {
     }
 
     /// The two angles whose cosine is proportional to `x` and sine to plus or minus `y`.
-    pub fn mirror(x: f64, y: f64, slack: f64) -> Roots {
+    pub fn mirror(x: f64, y: f64, slack: f64) -> Roots<2> {
+        let mut roots: Roots<2> = half(x, y, slack).widened();
+        if roots.len > 0 && roots.items[0][1] > VANISHING {
+            roots.push([roots.items[0][0], -roots.items[0][1]]);
+        }
+        roots
+    }
+
+    /// Of the two angles of [`mirror`] the one whose sine is positive.
+    pub fn half(x: f64, y: f64, slack: f64) -> Roots<1> {
         let n = sqrt(x * x + y * y);
         if !(x.abs() + y.abs() < f64::INFINITY) {
             return Roots::NONE;
@@ -544,11 +699,7 @@ mod roots {
             return Roots::ANY_ANGLE;
         }
         let mut roots = Roots::NONE;
-        let (x, y) = (x / n, apart(y.abs() / n, slack / n));
-        roots.push([x, y]);
-        if y > VANISHING {
-            roots.push([x, -y]);
-        }
+        roots.push([x / n, apart(y.abs() / n, slack / n)]);
         roots
     }
 
@@ -563,7 +714,7 @@ mod roots {
     ///
     /// When the line misses the unit circle by no more than [`EDGE`] and `slack` the nearest angle is given: such poses are at the
     /// edge of what the arm can do, and the check of solutions decides.
-    pub fn circle(a: f64, b: f64, d: f64, slack: f64) -> Roots {
+    pub fn circle(a: f64, b: f64, d: f64, slack: f64) -> Roots<2> {
         let n = sqrt(a * a + b * b);
         if !(a.abs() + b.abs() < f64::INFINITY) {
             return Roots::NONE;
@@ -588,7 +739,7 @@ mod roots {
     }
 
     /// The lengths with `a t^2 + b t + c = 0`; a discriminant that misses zero by `slack` counts as zero.
-    pub fn quadratic(a: f64, b: f64, c: f64, slack: f64) -> Roots {
+    pub fn quadratic(a: f64, b: f64, c: f64, slack: f64) -> Roots<2> {
         let mut roots = Roots::NONE;
         if a.abs() < VANISHING {
             if b.abs() >= VANISHING {
@@ -610,150 +761,6 @@ mod roots {
             roots.push([product / far, 0.0]);
         }
         roots
-    }
-
-    /// The angles with `q[0] cos^2 + q[1] cos sin + q[2] sin^2 + q[3] cos + q[4] sin + q[5] = 0`.
-    ///
-    /// The pencil of the conic and the unit circle holds a pair of real lines through their common points; a cubic gives it,
-    /// and each line meets the circle in at most two angles. A Newton step on the equation restores lost digits.
-    pub fn conic(q: [f64; 6], slack: f64) -> Roots {
-        let mut size = 0.0f64;
-        for x in q {
-            size = size.max(x.abs());
-        }
-        if !(size < f64::INFINITY) {
-            return Roots::NONE;
-        }
-        if size < VANISHING {
-            return Roots::ANY_ANGLE;
-        }
-        let [a, b, c, d, e, f] = q.map(|x| x / size);
-        // Symmetric matrix of the conic; the circle is diag(1, 1, -1).
-        let (b, d, e) = (0.5 * b, 0.5 * d, 0.5 * e);
-        // det(conic + t circle) = -(t^3 + p t^2 + r t + u).
-        let p = a + c - f;
-        let r = a * c - b * b - f * (a + c) + d * d + e * e;
-        let u = -(a * (c * f - e * e) - b * (b * f - e * d) + d * (b * e - c * d));
-        let mut best = [0.0f64; 9];
-        let mut lowest = f64::INFINITY;
-        for t in cubic(p, r, u) {
-            let m = [a + t, b, d, b, c + t, e, d, e, f - t];
-            // Product of the two eigenvalues that are not zero: negative for a pair of real lines.
-            let product = m[0] * m[4] - m[1] * m[1] + m[0] * m[8] - m[2] * m[2] + m[4] * m[8] - m[5] * m[5];
-            if product < lowest {
-                (lowest, best) = (product, m);
-            }
-        }
-        let mut roots = Roots::NONE;
-        for line in split(&best) {
-            let n = sqrt(line[0] * line[0] + line[1] * line[1]);
-            if n < VANISHING {
-                continue;
-            }
-            let met = circle(line[0] / n, line[1] / n, -line[2] / n, slack.max(1e-7));
-            for i in 0..met.count() {
-                roots.push(improve([a, 2.0 * b, c, 2.0 * d, 2.0 * e, f], met.get(i)));
-            }
-        }
-        roots
-    }
-
-    /// Real roots of `t^3 + p t^2 + r t + u`, the first repeated where there is only one.
-    fn cubic(p: f64, r: f64, u: f64) -> [f64; 3] {
-        // Newton from outside of all roots on the side of the inflection where a root must be: monotone.
-        let inflection = -p / 3.0;
-        let value = |t: f64| ((t + p) * t + r) * t + u;
-        let spread = sqrt((p * p - 3.0 * r).max(0.0));
-        let side = if value(inflection) > 0.0 { -1.0 } else { 1.0 };
-        let mut t = inflection + side * (spread * 0.7 + 1e-9);
-        while value(t) * side < 0.0 {
-            t = inflection + 2.0 * (t - inflection);
-        }
-        for _ in 0..60 {
-            let slope = (3.0 * t + 2.0 * p) * t + r;
-            if slope == 0.0 {
-                break;
-            }
-            let next = t - value(t) / slope;
-            if !(next < f64::INFINITY && next > -f64::INFINITY) || (next - t).abs() <= 1e-16 * t.abs() {
-                break;
-            }
-            t = next;
-        }
-        // The other two from the quotient t^2 + (p + t) t + (r + t (p + t)).
-        let (b, c) = (p + t, r + t * (p + t));
-        let half = -0.5 * b;
-        let discriminant = half * half - c;
-        if discriminant < 0.0 {
-            // A double root whose discriminant was lost to rounding still counts.
-            return if discriminant > -1e-12 * (half * half + c.abs()) { [t, half, half] } else { [t, t, t] };
-        }
-        let far = if half < 0.0 { half - sqrt(discriminant) } else { half + sqrt(discriminant) };
-        [t, far, if far == 0.0 { 0.0 } else { c / far }]
-    }
-
-    /// The two lines of a degenerate conic, row by row.
-    fn split(m: &[f64; 9]) -> [[f64; 3]; 2] {
-        let adjugate = [
-            m[5] * m[7] - m[4] * m[8],
-            m[1] * m[8] - m[2] * m[7],
-            m[2] * m[4] - m[1] * m[5],
-            0.0,
-            m[2] * m[6] - m[0] * m[8],
-            m[0] * m[5] - m[2] * m[3],
-            0.0,
-            0.0,
-            m[1] * m[3] - m[0] * m[4],
-        ];
-        // Minus the adjugate is the square p p^T of the point where the lines meet.
-        let square = [
-            [adjugate[0], adjugate[1], adjugate[2]],
-            [adjugate[1], adjugate[4], adjugate[5]],
-            [adjugate[2], adjugate[5], adjugate[8]],
-        ];
-        let mut i = 0;
-        for k in 1..3 {
-            if square[k][k] > square[i][i] {
-                i = k;
-            }
-        }
-        let root = sqrt(square[i][i]);
-        let meeting = if root > 0.0 { square[i].map(|x| x / root) } else { [0.0; 3] };
-        let [x, y, z] = meeting;
-        let lines = [[m[0], m[1] - z, m[2] + y], [m[3] + z, m[4], m[5] - x], [m[6] - y, m[7] + x, m[8]]];
-        let (mut row, mut column) = (0, 0);
-        for i in 0..3 {
-            for j in 0..3 {
-                if lines[i][j].abs() > lines[row][column].abs() {
-                    (row, column) = (i, j);
-                }
-            }
-        }
-        [lines[row], [lines[0][column], lines[1][column], lines[2][column]]]
-    }
-
-    /// Two Newton steps of the conic's equation along the circle, taken only where they help.
-    fn improve(q: [f64; 6], root: [f64; 2]) -> [f64; 2] {
-        let value = |[c, s]: [f64; 2]| (q[0] * c + q[1] * s + q[3]) * c + (q[2] * s + q[4]) * s + q[5];
-        let mut at = root;
-        let mut error = value(at);
-        for _ in 0..2 {
-            let [c, s] = at;
-            let slope = 2.0 * (q[2] - q[0]) * c * s + q[1] * (c * c - s * s) - q[3] * s + q[4] * c;
-            let step = -error / slope;
-            if !(step.abs() < 1e-2) {
-                break;
-            }
-            let next = [c - s * step, s + c * step];
-            let n = sqrt(next[0] * next[0] + next[1] * next[1]);
-            let next = [next[0] / n, next[1] / n];
-            let next_error = value(next);
-            if next_error.abs() >= error.abs() {
-                break;
-            }
-            (at, error) = (next, next_error);
-        }
-        at
     }
 }
 
@@ -986,7 +993,7 @@ mod candidate {
     //! From candidates to solutions: each is checked on the true chain, polished where it must be, and kept if it is new.
 
     use super::chain::{EXACT, Frame, Link, MAX_JOINTS, TOLERANCE, forward, polish};
-    use super::math::{atan2, cos_sin};
+    use super::math::{angle_of, cos_sin};
 
     /// Solutions closer than this in every variable (radians modulo a turn, metres) are the same one.
     pub const SAME: f64 = 1e-7;
@@ -1012,6 +1019,11 @@ mod candidate {
         pub held: &'a [bool],
     }
 
+    /// Whether a candidate that misses by the roots of these squares (rotation, position) needs no polish.
+    pub fn is_exact(misses: [f64; 2]) -> bool {
+        misses[0] <= EXACT * EXACT && misses[1] <= EXACT * EXACT
+    }
+
     impl Arm<'_> {
         /// `base_from_tip` for the `[cos, sin]` or `[length, _]` of each variable.
         pub fn forward_steps(&self, steps: &[[f64; 2]]) -> Frame {
@@ -1023,7 +1035,7 @@ mod candidate {
                 } else if link.slides {
                     [link.ratio * x, 0.0]
                 } else {
-                    cos_sin(link.ratio * atan2(y, x))
+                    cos_sin(link.ratio * angle_of(y, x))
                 };
             }
             forward(self.links, self.last_from_tip, &moves[..self.links.len()])
@@ -1048,7 +1060,7 @@ mod candidate {
             }
             for i in 0..values.len() {
                 if !self.held[i] {
-                    values[i] = if self.slides[i] { steps[i][0] } else { atan2(steps[i][1], steps[i][0]) };
+                    values[i] = if self.slides[i] { steps[i][0] } else { angle_of(steps[i][1], steps[i][0]) };
                 }
             }
             if distance <= EXACT {
@@ -1089,5 +1101,40 @@ mod candidate {
             turned += TAU;
         }
         turned
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every pose of a joint vector is solved, all answers reach their pose, and the joint vector is among them: of a hundred at most
+    /// one, near a singular pose, may be found by other answers alone.
+    #[test]
+    fn solves_the_poses_of_joint_vectors() {
+        let mut bits = 88172645463325252u64;
+        let mut found = Solutions::new();
+        let mut again = 0;
+        for _ in 0..300 {
+            let values: [f64; VARIABLES] = core::array::from_fn(|v| {
+                bits ^= bits << 13;
+                bits ^= bits >> 7;
+                bits ^= bits << 17;
+                let unit = (bits >> 11) as f64 / (1u64 << 53) as f64;
+                (2.0 * unit - 1.0) * if SLIDES[v] { 1.0 } else { 3.1 }
+            });
+            let pose = forward(&values);
+            solve(&pose, &FREE.map(|v| values[v]), &mut found);
+            let near = |other: &[f64; VARIABLES]| {
+                (0..VARIABLES).all(|v| {
+                    let gap = (values[v] - other[v]).abs();
+                    gap < 1e-6 || (!SLIDES[v] && (gap - core::f64::consts::TAU).abs() < 1e-6)
+                })
+            };
+            assert!(!found.as_slice().is_empty());
+            again += usize::from(found.as_slice().iter().any(near));
+            assert!(found.as_slice().iter().all(|values| forward(values).distance(&pose) < 1e-9));
+        }
+        assert!(again >= 297);
     }
 }

@@ -55,11 +55,24 @@ slack 0.0
         let t46 = t43 - t45
         let t47 = t45 - t43
         let t48 = s4 * t44 - c4 * (t42 - t25)
-        mirror(c4 * (t29 - t22) - s4 * t32, sqrt(t35 * t35 + t36 * t36)) -> c6 s6 {
+        half(c4 * (t29 - t22) - s4 * t32, sqrt(t35 * t35 + t36 * t36)) -> c6 s6 {
           let t51 = s6 * t48
           align(-(s6 * t37), t36 * s6) -> c5 s5 {
-            align(c5 * t41 - s5 * t46, c6 * (c5 * t47 - t41 * s5) - t51) -> c7 s7 {
+            let t54 = c5 * t41
+            let t55 = s5 * t46
+            let t56 = c5 * t47
+            let t57 = t41 * s5
+            align(t54 - t55, c6 * (t56 - t57) - t51) -> c7 s7 {
               emit angle(c1, s1) angle(c2, s2) angle(t0, t9) angle(c4, s4) angle(c5, s5) angle(c6, s6) angle(c7, s7)
+            }
+            zero(s6, 1e-11) {
+            } else {
+              let t60 = -c5
+              let t61 = -s5
+              let t62 = -s6
+              align(t55 - t54, t51 + c6 * (t57 - t56)) -> c7_2 s7_2 {
+                emit angle(c1, s1) angle(c2, s2) angle(t0, t9) angle(c4, s4) angle(t60, t61) angle(c6, t62) angle(c7_2, s7_2)
+              }
             }
           }
         }

@@ -49,11 +49,23 @@ slack 0.0
         let t40 = c4 * (t38 - t24) + s4 * t39
         let t41 = t25 - s5 * (t37 - t36)
         let t42 = c4 * t39 + s4 * (t24 - t38)
-        mirror(-(c4 * t28 + s4 * t30), sqrt(t31 * t31 + t34 * t34)) -> c2 s2 {
+        half(-(c4 * t28 + s4 * t30), sqrt(t31 * t31 + t34 * t34)) -> c2 s2 {
           let t45 = s2 * t42
           align(s2 * t35, -(t31 * s2)) -> c3 s3 {
-            align(c2 * (c3 * t40 - s3 * t41) - t45, -(c3 * t41 + t40 * s3)) -> c1 s1 {
+            let t48 = c3 * t40
+            let t49 = s3 * t41
+            let t50 = c3 * t41 + t40 * s3
+            align(c2 * (t48 - t49) - t45, -t50) -> c1 s1 {
               emit angle(c1, s1) angle(c2, s2) angle(c3, s3) angle(c4, s4) angle(c5, s5) angle(c6, s6) angle(t0, t2)
+            }
+            zero(s2, 1e-11) {
+            } else {
+              let t53 = -s2
+              let t54 = -c3
+              let t55 = -s3
+              align(t45 + c2 * (t49 - t48), t50) -> c1_2 s1_2 {
+                emit angle(c1_2, s1_2) angle(c2, t53) angle(t54, t55) angle(c4, s4) angle(c5, s5) angle(c6, s6) angle(t0, t2)
+              }
             }
           }
         }

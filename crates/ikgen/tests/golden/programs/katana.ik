@@ -38,16 +38,30 @@ slack 0.0
         let t29 = t16 * s3 + c3 * t20
         let t30 = c3 * t23
         let t31 = s3 * t24
-        let t32 = c3 * t24 - s3 * t25
-        let t33 = t30 - t31
+        let t32 = t30 - t31
+        let t33 = c3 * t24 - s3 * t25
         let t34 = t31 - t30
-        mirror(t11, sqrt(t28 * t28 + t29 * t29)) -> c5 s5 {
+        half(t11, sqrt(t28 * t28 + t29 * t29)) -> c5 s5 {
           let t37 = s5 * t13
+          let t38 = -c5
           align(-(t28 * s5), t29 * s5) -> c4 s4 {
-            align(c4 * t33 - s4 * t32, t37 + c5 * (s4 * t34 - c4 * t32)) -> c6 s6 {
+            let t41 = c4 * t32
+            let t42 = s4 * t33
+            let t43 = s4 * t34
+            let t44 = c4 * t33
+            align(t41 - t42, t37 + c5 * (t43 - t44)) -> c6 s6 {
               zero(1.0 - c6, 0.001) {
-                emit angle(c1, s1) angle(c2, s2) angle(c3, s3) angle(c4, s4) angle(s5, -c5)
+                emit angle(c1, s1) angle(c2, s2) angle(c3, s3) angle(c4, s4) angle(s5, t38)
               } else {
+              }
+            }
+            zero(s5, 1e-11) {
+            } else {
+              align(t42 - t41, c5 * (t44 - t43) - t37) -> c6_2 s6_2 {
+                zero(1.0 - c6_2, 0.001) {
+                  emit angle(c1, s1) angle(c2, s2) angle(c3, s3) angle(-c4, -s4) angle(-s5, t38)
+                } else {
+                }
               }
             }
           }

@@ -45,11 +45,15 @@ slack 0.0
         let t36 = s3 * t27 - c3 * t28
         let t37 = c3 * t29 - s3 * t32
         let t38 = s3 * t29 - c3 * t33
-        mirror(-(t27 * c3 + s3 * t28), sqrt(t36 * t36 + t17)) -> c5 s5 {
+        half(-(t27 * c3 + s3 * t28), sqrt(t36 * t36 + t17)) -> c5 s5 {
           let t41 = s5 * t38
           align(t36 * s5, -(t16 * s5)) -> c4 s4 {
             align(c4 * t18 - s4 * t37, t41 - c5 * (c4 * t37 + t18 * s4)) -> c6 s6 {
               emit angle(c1, s1) angle(c2, s2) angle(c3, s3) angle(c4, s4) angle(c5, s5) angle(c6, s6)
+              zero(s5, 1e-11) {
+              } else {
+                emit angle(c1, s1) angle(c2, s2) angle(c3, s3) angle(-c4, -s4) angle(c5, -s5) angle(-c6, -s6)
+              }
             }
           }
         }

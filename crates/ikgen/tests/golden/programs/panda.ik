@@ -42,15 +42,28 @@ slack 0.0
         let t33 = c4 * (t32 - t22)
         let t34 = s6 * t9 - r00 * c6
         let t35 = s4 * t34
-        let t36 = s5 * t31 + t23
-        let t37 = t33 - t35
+        let t36 = t33 - t35
+        let t37 = s5 * t31 + t23
         let t38 = s4 * (t22 - t32) - c4 * t34
         let t39 = t35 - t33
-        mirror(s4 * t27 - c4 * t28, sqrt(t29 * t29 + t30 * t30)) -> c2 s2 {
+        half(s4 * t27 - c4 * t28, sqrt(t29 * t29 + t30 * t30)) -> c2 s2 {
           let t42 = s2 * t38
           align(-(t30 * s2), -(t29 * s2)) -> c3 s3 {
-            align(c2 * (c3 * t37 - s3 * t36) - t42, s3 * t39 - c3 * t36) -> c1 s1 {
+            let t45 = c3 * t36
+            let t46 = s3 * t37
+            let t47 = s3 * t39
+            let t48 = c3 * t37
+            align(c2 * (t45 - t46) - t42, t47 - t48) -> c1 s1 {
               emit angle(c1, s1) angle(c2, s2) angle(c3, s3) angle(c4, s4) angle(c5, s5) angle(c6, s6) angle(t0, t2)
+            }
+            zero(s2, 1e-11) {
+            } else {
+              let t51 = -s2
+              let t52 = -c3
+              let t53 = -s3
+              align(t42 + c2 * (t46 - t45), t48 - t47) -> c1_2 s1_2 {
+                emit angle(c1_2, s1_2) angle(c2, t51) angle(t52, t53) angle(c4, s4) angle(c5, s5) angle(c6, s6) angle(t0, t2)
+              }
             }
           }
         }

@@ -40,11 +40,23 @@ slack 0.0
         let t31 = c4 * t25 - s4 * t24
         let t32 = c4 * t27 + s4 * t28
         let t33 = c4 * t28 - s4 * t27
-        mirror(s4 * t26 - c4 * t24, sqrt(t31 * t31 + t15)) -> c2 s2 {
+        half(s4 * t26 - c4 * t24, sqrt(t31 * t31 + t15)) -> c2 s2 {
           let t36 = s2 * t33
           align(-(t31 * s2), t14 * s2) -> c3 s3 {
-            align(c3 * t16 + s3 * t32, t36 - c2 * (t16 * s3 - c3 * t32)) -> c1 s1 {
+            let t39 = c3 * t16 + s3 * t32
+            let t40 = t16 * s3
+            let t41 = c3 * t32
+            align(t39, t36 - c2 * (t40 - t41)) -> c1 s1 {
               emit angle(c1, s1) angle(c2, s2) angle(c3, s3) angle(c4, s4) angle(c5, s5) angle(c6, s6)
+            }
+            zero(s2, 1e-11) {
+            } else {
+              let t44 = -s2
+              let t45 = -c3
+              let t46 = -s3
+              align(-t39, -(t36 + c2 * (t41 - t40))) -> c1_2 s1_2 {
+                emit angle(c1_2, s1_2) angle(c2, t44) angle(t45, t46) angle(c4, s4) angle(c5, s5) angle(c6, s6)
+              }
             }
           }
         }

@@ -37,18 +37,31 @@ slack 0.0
         let t28 = r01 * c6
         let t29 = s5 * (t27 - t28) + t14
         let t30 = s4 * t29
-        let t31 = c5 * (t28 - t27) + t15
-        let t32 = t26 - t30
+        let t31 = t26 - t30
+        let t32 = c5 * (t28 - t27) + t15
         let t33 = c4 * t29 + s4 * t25
         let t34 = t30 - t26
         let t35 = 1.0 - c6 + t16
-        mirror(-(c4 * (t12 - t21) + s4 * t22), sqrt(t23 * t23 + t24 * t24)) -> c2 s2 {
+        half(-(c4 * (t12 - t21) + s4 * t22), sqrt(t23 * t23 + t24 * t24)) -> c2 s2 {
           let t38 = s2 * t33
           align(-(t24 * s2), -(t23 * s2)) -> c3 s3 {
-            align(c2 * (c3 * t32 - s3 * t31) - t38, s3 * t34 - c3 * t31) -> c1 s1 {
+            let t41 = c3 * t31
+            let t42 = s3 * t32
+            let t43 = s3 * t34
+            let t44 = c3 * t32
+            align(c2 * (t41 - t42) - t38, t43 - t44) -> c1 s1 {
               zero(t35, 0.001) {
                 emit angle(c1, s1) angle(c2, s2) angle(c3, s3) angle(c4, s4)
               } else {
+              }
+            }
+            zero(s2, 1e-11) {
+            } else {
+              align(t38 + c2 * (t42 - t41), t44 - t43) -> c1_2 s1_2 {
+                zero(t35, 0.001) {
+                  emit angle(c1_2, s1_2) angle(c2, -s2) angle(-c3, -s3) angle(c4, s4)
+                } else {
+                }
               }
             }
           }
