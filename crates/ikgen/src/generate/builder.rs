@@ -1,7 +1,7 @@
 //! Writing programs: scalars, vectors and turns as expressions, and equations that open a loop over their roots.
 
 use std::cell::RefCell;
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use nalgebra::Vector3;
 
@@ -277,6 +277,13 @@ impl<'b> Mul for Scalar<'b> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         self.binary(Binary::Mul, other)
+    }
+}
+
+impl<'b> Div for Scalar<'b> {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        self.binary(Binary::Div, other)
     }
 }
 

@@ -121,8 +121,8 @@ fn search(
     options: &Options,
     trace: &mut Vec<String>,
 ) -> Result<(Program, String), String> {
-    if Facts::new(chain, 0.0).is_none() {
-        return Err("joints that follow other joints of the chain are not solved yet".into());
+    if Facts::coupled(chain, 0.0).is_none() {
+        return Err("joints that follow others are solved only where they move by the same amount".into());
     }
     if chain.joints.len() > crate::kernel::chain::MAX_JOINTS {
         return Err(format!("{} joints are too many", chain.joints.len()));
@@ -151,6 +151,28 @@ fn search(
                 Err(Some(reason)) => failure = Some(reason),
                 Err(None) => {}
             }
+        }
+    }
+    // Six joints that all turn are always solved in general.
+    let special = chain.joints.iter().any(|j| j.motion == ChainMotion::Prismatic)
+        || chain.joints.len() != chain.variables.len()
+        || chain.variables.len() < 6;
+    let needed = best.is_none() && special;
+    let allowed = ladder.into_iter().filter(|t| needed && *t <= options.tolerance.max(1e-9));
+    for tolerance in allowed.collect::<Vec<_>>() {
+        for free in &choices {
+            match one_by_one(chain, options, free, tolerance, &letters, trace) {
+                Ok(found) => {
+                    if best.as_ref().is_none_or(|b| found.lost < b.lost) {
+                        best = Some(found);
+                    }
+                }
+                Err(Some(reason)) => failure = Some(reason),
+                Err(None) => {}
+            }
+        }
+        if best.is_some() {
+            break;
         }
     }
     if best.is_none() {
@@ -220,18 +242,11 @@ fn attempt(
                 Ok(how) => {
                     let how = if whole < 6 { format!("{how}, completed to 6R") } else { how };
                     let class = describe(letters, name, reversed, &how, free, chain);
-                    let mut program = builder.finish();
-                    // Below this the difference is rounding of the description, which the check covers.
-                    let snap = problem.snap();
-                    program.snap = if snap < 1e-12 { 0.0 } else { snap };
-                    program.slack = if snap < ROUNDING { 0.0 } else { 4.0 * snap };
-                    program.class = class.clone();
-                    let program = passes::optimise(&program);
-                    match trial(&program, chain, options) {
-                        Ok(lost) => {
-                            line += &format!("{how}; solved, {lost} trial poses lost");
+                    match finished(builder, class.clone(), problem.snap(), chain, options) {
+                        Ok(found) => {
+                            line += &format!("{how}; solved, {} trial poses lost", found.lost);
                             trace.push(line);
-                            return Ok(Found { program, class, lost });
+                            return Ok(found);
                         }
                         Err(reason) => {
                             line += &format!("{how}; {reason}");
@@ -244,6 +259,53 @@ fn attempt(
         }
     }
     Err(failure)
+}
+
+/// As [`attempt`], by equations with one unknown each.
+fn one_by_one(
+    chain: &SerialChain,
+    options: &Options,
+    free: &[usize],
+    tolerance: f64,
+    letters: &str,
+    trace: &mut Vec<String>,
+) -> Result<Found, Option<String>> {
+    let facts = Facts::coupled(chain, tolerance).ok_or(None)?;
+    let line = format!("tolerance {tolerance:e}, free {free:?}, one by one: ");
+    let builder = Builder::new(chain.variables.len(), free.to_vec());
+    let how = match super::one_by_one::write(&facts, free, &builder) {
+        Ok(how) => how,
+        Err(reason) => {
+            trace.push(format!("{line}{reason}"));
+            return Err(None);
+        }
+    };
+    let class = describe(letters, "one by one", false, &how, free, chain);
+    let snap = super::facts::snap_between(&facts.described, &facts.ideal);
+    let result = finished(builder, class.clone(), snap, chain, options);
+    match &result {
+        Ok(found) => trace.push(format!("{line}{how}; solved, {} trial poses lost", found.lost)),
+        Err(reason) => trace.push(format!("{line}{how}; {reason}")),
+    }
+    result.map_err(|reason| Some(format!("{class}: {reason}")))
+}
+
+/// The optimised program of a builder, tried.
+fn finished(
+    builder: Builder,
+    class: String,
+    snap: f64,
+    chain: &SerialChain,
+    options: &Options,
+) -> Result<Found, String> {
+    let mut program = builder.finish();
+    // Below this the difference is rounding of the description, which the check covers.
+    program.snap = if snap < 1e-12 { 0.0 } else { snap };
+    program.slack = if snap < ROUNDING { 0.0 } else { 4.0 * snap };
+    program.class = class.clone();
+    let program = passes::optimise(&program);
+    let lost = trial(&program, chain, options)?;
+    Ok(Found { program, class, lost })
 }
 
 /// Runs a program on random and singular poses: how many joint vectors of the former it did not recover and how many of

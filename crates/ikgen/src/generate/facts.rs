@@ -35,6 +35,12 @@ pub struct Facts {
 impl Facts {
     /// The facts of a chain whose joints each have a variable of their own; `None` for coupled joints.
     pub fn new(chain: &SerialChain, tolerance: f64) -> Option<Self> {
+        let facts = Self::coupled(chain, tolerance)?;
+        (facts.ideal.len() == chain.variables.len()).then_some(facts)
+    }
+
+    /// The facts of a chain in which several joints may move by the same amount, or by the opposite; `None` for other ratios.
+    pub fn coupled(chain: &SerialChain, tolerance: f64) -> Option<Self> {
         let axes = axes_at_zero(chain)?;
         let tip = chain.forward(&vec![0.0; chain.variables.len()]);
         let identity = nalgebra::UnitQuaternion::identity();
@@ -71,9 +77,8 @@ pub fn snap_between(described: &[Axis], ideal: &[Axis]) -> f64 {
 fn axes_at_zero(chain: &SerialChain) -> Option<Vec<Axis>> {
     let mut axes = Vec::new();
     let mut at = Pose::identity();
-    let mut seen = vec![false; chain.variables.len()];
     for joint in &chain.joints {
-        if joint.multiplier.abs() != 1.0 || std::mem::replace(&mut seen[joint.variable], true) {
+        if joint.multiplier.abs() != 1.0 {
             return None;
         }
         at *= joint.previous_from_joint;

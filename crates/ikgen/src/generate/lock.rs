@@ -4,11 +4,25 @@ use nalgebra::Matrix6;
 use robotc_core::Seed;
 use robotc_core::model::{ChainMotion, SerialChain};
 
-/// Choices of free variables, best first: none for up to six variables; of seven each one that leaves a chain that
-/// moves well, farthest from the base first; no choice beyond seven.
+/// Choices of free variables, best first: none for up to six variables that all matter; of seven each one that leaves a
+/// chain that moves well, farthest from the base first; no choice beyond seven.
+///
+/// A chain of up to six variables that has more of them than ways to move (several slides along one direction) gets those
+/// given, from the tip, without which it moves as before.
 pub(super) fn choices(chain: &SerialChain) -> Vec<Vec<usize>> {
     match chain.variables.len() {
-        0..=6 => vec![Vec::new()],
+        0..=6 => {
+            let whole = freedom(chain, &[]);
+            let mut given = Vec::new();
+            for v in (0..chain.variables.len()).rev() {
+                given.push(v);
+                if freedom(chain, &given) < whole {
+                    given.pop();
+                }
+            }
+            given.reverse();
+            vec![given]
+        }
         7 => {
             let score: Vec<f64> = (0..7).map(|v| freedom_without(chain, v)).collect();
             let best = score.iter().fold(0.0, |a: f64, b| a.max(*b));
@@ -20,6 +34,14 @@ pub(super) fn choices(chain: &SerialChain) -> Vec<Vec<usize>> {
         }
         _ => Vec::new(),
     }
+}
+
+/// In how many ways a chain moves at a random place without these variables.
+fn freedom(chain: &SerialChain, without: &[usize]) -> usize {
+    let mut rng = Seed::new(0).split("ikgen freedom").rng();
+    let columns = jacobian(chain, &crate::report::poses::random(chain, &mut rng));
+    let left: Vec<usize> = (0..columns.len()).filter(|v| !without.contains(v)).collect();
+    nalgebra::DMatrix::from_fn(6, left.len(), |i, j| columns[left[j]][i]).rank(1e-3)
 }
 
 /// Mean volume of the Jacobian (per radian and metre) without one variable.

@@ -3,8 +3,10 @@
 pub mod builder;
 pub mod compile;
 mod complete;
+pub mod equations;
 pub mod facts;
 pub(crate) mod lock;
+mod one_by_one;
 pub mod problem;
 pub mod strategies;
 

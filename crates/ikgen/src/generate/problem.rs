@@ -92,14 +92,9 @@ impl Problem {
     /// The wanted motion `G` of this problem.
     pub fn goal<'b>(&self, b: &'b Builder) -> Motion<'b> {
         let given = |axis: &Axis| Factor::Joint(self.move_of(b, axis).back(), *axis);
-        // canonical_from_tip (wanted) * tip_from_canonical (zero), less the given motions at both ends.
+        // Less the given motions at both ends.
         let mut factors: Vec<Factor<'b>> = self.outer.0.iter().rev().map(given).collect();
-        let turn = self.facts.canonical_from_base;
-        if turn != UnitQuaternion::identity() {
-            factors.push(Factor::constant(b, &Pose::from_parts(Translation3::identity(), turn)));
-        }
-        factors.push(Factor::Rigid { rows: b.rotation(), position: b.position() });
-        factors.push(Factor::constant(b, &self.facts.tip.inverse()));
+        factors.extend(goal_of(&self.facts, b).factors);
         factors.extend(self.outer.1.iter().rev().map(given));
         let motion = Motion { factors };
         if self.reversed { motion.inverse() } else { motion }
@@ -143,6 +138,19 @@ impl Problem {
     pub fn name(&self, i: usize) -> String {
         (self.axes[i].variable + 1).to_string()
     }
+}
+
+/// The motion that takes the tip from its pose at zero to the wanted one: `canonical_from_tip` (wanted) times
+/// `tip_from_canonical` (at zero).
+pub fn goal_of<'b>(facts: &Facts, b: &'b Builder) -> Motion<'b> {
+    let mut factors = Vec::new();
+    let turn = facts.canonical_from_base;
+    if turn != UnitQuaternion::identity() {
+        factors.push(Factor::constant(b, &Pose::from_parts(Translation3::identity(), turn)));
+    }
+    factors.push(Factor::Rigid { rows: b.rotation(), position: b.position() });
+    factors.push(Factor::constant(b, &facts.tip.inverse()));
+    Motion { factors }
 }
 
 /// A rigid motion: a product of factors, the last of which acts first.

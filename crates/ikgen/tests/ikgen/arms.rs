@@ -207,7 +207,70 @@ pub(crate) fn xarm6() -> SerialChain {
     )
 }
 
+/// Makes joints slide along their axes.
+pub(crate) fn sliding(mut chain: SerialChain, joints: &[usize]) -> SerialChain {
+    for i in joints {
+        chain.joints[*i].motion = ChainMotion::Prismatic;
+        (chain.variables[*i].lower, chain.variables[*i].upper) = (-0.4, 0.6);
+    }
+    chain
+}
+
+/// Two turning joints, a quill and its turn.
+pub(crate) fn scara() -> SerialChain {
+    let z = |x: f64| (Z, [x, 0.0, 0.2]);
+    sliding(chain("scara", &[z(0.0), z(0.3), z(0.55), z(0.55)], [0.55, 0.0, 0.1]), &[2])
+}
+
+/// A spherical wrist on two turning joints and one that slides (the Stanford arm).
+pub(crate) fn stanford() -> SerialChain {
+    let wrist = [0.15, 0.0, 0.9];
+    let joints = [(Z, [0.0, 0.0, 0.4]), (Y, [0.0, 0.0, 0.4]), (Z, wrist), (Z, wrist), (Y, wrist), (Z, wrist)];
+    sliding(chain("stanford", &joints, [0.15, 0.0, 1.1]), &[2])
+}
+
+/// A gantry with a wrist whose last axis does not meet the others.
+pub(crate) fn gantry() -> SerialChain {
+    let at = [0.2, 0.1, 1.0];
+    let joints = [(X, at), (Y, at), (Z, at), (Z, at), (Y, at), (X, [0.3, 0.1, 0.95])];
+    sliding(chain("gantry", &joints, [0.4, 0.1, 0.95]), &[0, 1, 2])
+}
+
+/// Four joints, the third of which follows the second to keep the fourth upright (a palletiser).
+pub(crate) fn palletiser() -> SerialChain {
+    let joints = [
+        (Z, [0.0, 0.0, 0.3]),
+        (Y, [0.1, 0.0, 0.5]),
+        (Y, [0.1, 0.0, 1.1]),
+        (Y, [0.7, 0.0, 1.1]),
+        (Z, [0.8, 0.0, 1.1]),
+    ];
+    let mut chain = chain("palletiser", &joints, [0.8, 0.0, 1.0]);
+    // The last pitch undoes the second one; the elbow is free.
+    chain.joints[3].variable = 1;
+    chain.joints[3].multiplier = -1.0;
+    chain.joints[4].variable = 3;
+    chain.variables.pop();
+    chain
+}
+
 /// All of them.
 pub(crate) fn all() -> Vec<SerialChain> {
-    vec![kr6(), skew(), ur5(), ru5(), shoulder(), panda(), iiwa(), fetch(), katana(), wam4(), xarm6()]
+    vec![
+        kr6(),
+        skew(),
+        ur5(),
+        ru5(),
+        shoulder(),
+        panda(),
+        iiwa(),
+        fetch(),
+        katana(),
+        wam4(),
+        xarm6(),
+        scara(),
+        stanford(),
+        gantry(),
+        palletiser(),
+    ]
 }
