@@ -36,12 +36,12 @@ impl<P: Clone> GoalTree<P> {
         self.dead_ends[node] += 1;
     }
 
-    /// How often following ended anywhere between a node and its goal.
+    /// How often following ended anywhere between a node and its goal; what ended at the goal itself came from elsewhere.
     pub(super) fn dead_ends(&self, mut node: usize) -> u32 {
-        let mut sum = self.dead_ends[node];
+        let mut sum = 0;
         while let Some(parent) = self.parent(node) {
-            node = parent;
             sum += self.dead_ends[node];
+            node = parent;
         }
         sum
     }

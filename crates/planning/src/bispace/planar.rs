@@ -90,7 +90,7 @@ impl Planar {
         let mut heading = 0.0;
         for i in 0..3 {
             heading += q[2 + i];
-            let (sin, cos) = heading.sin_cos();
+            let (sin, cos) = libm::sincos(heading);
             points[i + 1] = [points[i][0] + LINKS[i] * cos, points[i][1] + LINKS[i] * sin];
         }
         points
@@ -101,7 +101,7 @@ impl Planar {
         let steps = (distance(from, to) / 0.05).ceil().max(1.0);
         (0..=steps as usize).all(|k| {
             let [x, y, heading] = toward(from, to, k as f64 / steps);
-            let (sin, cos) = heading.sin_cos();
+            let (sin, cos) = libm::sincos(heading);
             let wrist = [x - LINKS[2] * cos, y - LINKS[2] * sin];
             let inside = |v: f64| (0.0..=10.0).contains(&v);
             inside(x) && inside(y) && walls.iter().all(|b| segment_gap(wrist, [x, y], b) > LINK_RADIUS)
@@ -115,7 +115,7 @@ fn turn(from: f64, to: f64) -> f64 {
 }
 
 fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1]) + RADIAN * turn(a[2], b[2]).abs()
+    libm::hypot(a[0] - b[0], a[1] - b[1]) + RADIAN * turn(a[2], b[2]).abs()
 }
 
 fn toward(from: &[f64; 3], to: &[f64; 3], t: f64) -> [f64; 3] {
@@ -125,7 +125,7 @@ fn toward(from: &[f64; 3], to: &[f64; 3], t: f64) -> [f64; 3] {
 
 fn point_gap(p: [f64; 2], (low, high): &Box2) -> f64 {
     let gap = |i: usize| (low[i] - p[i]).max(p[i] - high[i]).max(0.0);
-    gap(0).hypot(gap(1))
+    libm::hypot(gap(0), gap(1))
 }
 
 /// Distance of a segment from a box: the gap of a point is convex along the segment.
@@ -170,7 +170,7 @@ impl EdgeChecker for Planar {
     fn travel(&self, difference: &[f64]) -> f64 {
         let reach = |i: usize| LINKS[i..].iter().sum::<f64>();
         let turns: f64 = (0..3).map(|i| reach(i) * difference[2 + i].abs()).sum();
-        difference[0].hypot(difference[1]) + turns
+        libm::hypot(difference[0], difference[1]) + turns
     }
 
     fn resolution(&self) -> f64 {
@@ -234,16 +234,17 @@ impl Workspace for Tool {
     }
 
     fn solutions(&mut self, q: &[f64], to: &[f64; 3]) -> Vec<Vec<f64>> {
-        let (sin, cos) = to[2].sin_cos();
+        let (sin, cos) = libm::sincos(to[2]);
         let (x, y) = (to[0] - LINKS[2] * cos - q[0], to[1] - LINKS[2] * sin - q[1]);
         let bend = (x * x + y * y - LINKS[0] * LINKS[0] - LINKS[1] * LINKS[1]) / (2.0 * LINKS[0] * LINKS[1]);
         if bend.abs() > 1.0 {
             return vec![];
         }
-        let mut found: Vec<Vec<f64>> = [bend.acos(), -bend.acos()]
+        let mut found: Vec<Vec<f64>> = [libm::acos(bend), -libm::acos(bend)]
             .into_iter()
             .map(|elbow| {
-                let shoulder = y.atan2(x) - (LINKS[1] * elbow.sin()).atan2(LINKS[0] + LINKS[1] * elbow.cos());
+                let shoulder = libm::atan2(y, x)
+                    - libm::atan2(LINKS[1] * libm::sin(elbow), LINKS[0] + LINKS[1] * libm::cos(elbow));
                 vec![q[0], q[1], shoulder, elbow, turn(shoulder + elbow, to[2])]
             })
             .filter(|q| self.space.contains(q))
@@ -257,14 +258,14 @@ impl Workspace for Tool {
     }
 
     fn base_distance(&self, q: &[f64], to: &[f64; 3]) -> f64 {
-        (to[0] - q[0]).hypot(to[1] - q[1])
+        libm::hypot(to[0] - q[0], to[1] - q[1])
     }
 
     fn sample_near(&self, space: &Space, to: &[f64; 3], rng: &mut Rng) -> Vec<f64> {
         let mut q = space.sample(rng);
         let (distance, angle) = (self.reach() * rng.unit().sqrt(), rng.range(-PI, PI));
-        q[0] = to[0] + distance * angle.cos();
-        q[1] = to[1] + distance * angle.sin();
+        q[0] = to[0] + distance * libm::cos(angle);
+        q[1] = to[1] + distance * libm::sin(angle);
         space.clamp(&mut q);
         q
     }

@@ -49,10 +49,10 @@ impl Default for BiSpaceOptions {
     fn default() -> Self {
         Self {
             forward: 10,
-            backward: 5,
+            backward: 1,
             step: 0.1,
             goal_step: 0.2,
-            support: 4,
+            support: 2,
             start_bias: 0.1,
             tolerance: 0.02,
             metric: TreeMetric::Plain,
@@ -141,6 +141,11 @@ impl<W: Workspace + ?Sized> Search<'_, W> {
             return Err(ToolFailureReason::NoGoal);
         }
         let options = self.options;
+        // Many goals are reached by going straight to them.
+        let pose = self.backward.nearest(&*self.workspace, &self.start);
+        if let Some(reached) = self.follow(checker, 0, pose, budget, rng)? {
+            return Ok(reached);
+        }
         loop {
             for _ in 0..options.backward {
                 budget.check().map_err(ToolFailureReason::Interrupted)?;
