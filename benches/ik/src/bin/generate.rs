@@ -28,6 +28,11 @@ fn main() -> std::io::Result<()> {
             let _ = writeln!(contenders, "    contender!({name:?}, {suffix:?}, {name}_{suffix}),");
         }
     }
-    let list = format!("/// The generated solvers.\npub fn all() -> Vec<Generated> {{\n    vec![\n{contenders}    ]\n}}\n");
-    std::fs::write(folder.join("mod.rs"), format!("use crate::contender::{{Generated, contender}};\n\n{modules}\n{list}"))
+    let list = format!(
+        "/// The generated solvers.\npub fn all() -> Vec<Generated> {{\n    vec![\n{contenders}    ]\n}}\n"
+    );
+    std::fs::write(
+        folder.join("mod.rs"),
+        format!("use crate::contender::{{Generated, contender}};\n\n{modules}\n{list}"),
+    )
 }

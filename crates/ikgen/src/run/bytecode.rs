@@ -31,7 +31,7 @@ const MAX_REGISTERS: usize = 4096;
 const POSE_REGISTERS: usize = 12;
 
 #[derive(Debug, Clone, Copy)]
-enum Op {
+pub(super) enum Op {
     Add,
     Sub,
     Mul,
@@ -49,15 +49,15 @@ enum Op {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Step {
-    op: Op,
-    to: u16,
-    a: u16,
-    b: u16,
+pub(super) struct Step {
+    pub(super) op: Op,
+    pub(super) to: u16,
+    pub(super) a: u16,
+    pub(super) b: u16,
 }
 
 #[derive(Debug, Clone)]
-enum Item {
+pub(super) enum Item {
     Steps { from: u32, to: u32 },
     ForEach { kind: RootKind, args: [u16; 6], out: [u16; 2], outputs: u8, body: Vec<Item> },
     Six { args: Box<[u16; NUMBERS]>, out: [u16; 12], body: Vec<Item> },
@@ -69,13 +69,13 @@ enum Item {
 /// A program made ready to run: no lookup, no allocation.
 #[derive(Debug, Clone)]
 pub struct Bytecode {
-    steps: Vec<Step>,
+    pub(super) steps: Vec<Step>,
     /// Registers of the steps of offered candidates, and of the value of each variable.
-    offered: Vec<[u16; 3]>,
-    body: Vec<Item>,
-    first_constant: usize,
-    constants: Vec<f64>,
-    registers: usize,
+    pub(super) offered: Vec<[u16; 3]>,
+    pub(super) body: Vec<Item>,
+    pub(super) first_constant: usize,
+    pub(super) constants: Vec<f64>,
+    pub(super) registers: usize,
 }
 
 impl Bytecode {

@@ -3,11 +3,12 @@
 
 pub mod bytecode;
 pub mod interpreter;
+mod lanes;
 mod solver;
 mod true_chain;
 
 pub use bytecode::{Bytecode, Candidate, TooLarge};
-pub use solver::{Engine, LoadError, Solver};
+pub use solver::{Batch, Engine, LoadError, Solver};
 pub use true_chain::TrueChain;
 
 use robotc_core::Pose;

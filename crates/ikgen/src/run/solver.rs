@@ -4,6 +4,7 @@ use robotc_core::Pose;
 use robotc_core::ik::{IkSolutions, InverseKinematics};
 use robotc_core::model::SerialChain;
 
+use super::lanes::{self, LANES};
 use super::{Bytecode, Candidate, TooLarge, TrueChain, frame, interpreter};
 use crate::ir::{Program, TextError};
 use crate::kernel::candidate::{MOST_MISSES, WIDER, is_exact};
@@ -160,6 +161,75 @@ impl Solver {
         let arm = self.chain.arm(&self.held[..values.len()]);
         if !out.iter().any(|other| arm.same(values, other)) {
             out.push(values);
+        }
+    }
+}
+
+/// The solutions of many poses, in the order of the poses.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Batch {
+    width: usize,
+    values: Vec<f64>,
+    /// Where the solutions of each pose end.
+    ends: Vec<usize>,
+}
+
+impl Batch {
+    /// Number of poses.
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there is no pose.
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// The solutions of a pose: joint vectors as [`InverseKinematics::solve`] gives them, in the same order.
+    pub fn solutions(&self, pose: usize) -> impl ExactSizeIterator<Item = &[f64]> {
+        let start = pose.checked_sub(1).map_or(0, |before| self.ends[before]);
+        self.values[start..self.ends[pose]].chunks_exact(self.width.max(1))
+    }
+}
+
+impl Solver {
+    /// All solutions of many poses: the same as one [`solve`](InverseKinematics::solve) each, faster.
+    ///
+    /// `free` holds the values of the free variables of one pose after the other.
+    pub fn solve_batch(&self, base_from_tip: &[Pose], free: &[f64], out: &mut Batch) {
+        let (n, given) = (self.program.variables, self.program.free.len());
+        assert_eq!(free.len(), given * base_from_tip.len(), "one value for each free variable of each pose");
+        out.width = n;
+        out.values.clear();
+        out.ends.clear();
+        let arm = self.chain.arm(&self.held[..n]);
+        let mut found: [IkSolutions; LANES] = Default::default();
+        let mut alone = IkSolutions::new();
+        // What the polish has to see anyway gains nothing.
+        let lanes_help = self.engine == Engine::Bytecode && self.program.snap == 0.0;
+        let found_cell = std::cell::RefCell::new(&mut found);
+        let mut run = lanes::Run::new(&self.code, self.program.slack, |lane, values: &[f64]| {
+            let found = &mut found_cell.borrow_mut()[lane];
+            if !found.iter().any(|other| arm.same(values, other)) {
+                found.push(values);
+            }
+        });
+        for (group, poses) in base_from_tip.chunks(LANES).enumerate() {
+            let first = group * LANES;
+            let given_of = |i: usize| &free[(first + i) * given..][..given];
+            found_cell.borrow_mut().iter_mut().for_each(|f| f.reset(n));
+            let frames: Vec<(Frame, &[f64])> =
+                poses.iter().enumerate().map(|(i, pose)| (frame(pose), given_of(i))).collect();
+            let rest = if lanes_help { run.run(&frames) } else { u8::MAX };
+            for (i, pose) in poses.iter().enumerate() {
+                if rest >> i & 1 == 1 {
+                    self.solve(pose, given_of(i), &mut alone);
+                    out.values.extend(alone.iter().flatten());
+                } else {
+                    out.values.extend(found_cell.borrow()[i].iter().flatten());
+                }
+                out.ends.push(out.values.len());
+            }
         }
     }
 }

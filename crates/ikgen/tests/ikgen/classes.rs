@@ -3,6 +3,7 @@
 use robotc_core::Seed;
 use robotc_core::ik::{IkSolutions, InverseKinematics};
 use robotc_ikgen::report::{ProofOptions, poses, prove};
+use robotc_ikgen::run::Batch;
 use robotc_ikgen::{Options, Solver, check, compile};
 
 use crate::arms;
@@ -91,6 +92,28 @@ fn a_program_serves_a_recalibrated_chain() {
     let report = robotc_ikgen::report::prove_set(&measured, &solver, set, &|| 0.0);
     assert_eq!(report.wrong, 0);
     assert!(report.solved >= 198, "{report:?}");
+}
+
+#[test]
+fn batches_give_the_bits_of_single_poses() {
+    for chain in arms::all() {
+        let compiled = compile(&chain, &Options::default()).unwrap();
+        let solver = compiled.solver();
+        for set in poses::sets(&chain, &compiled.free, 21, Seed::new(12)) {
+            let mut base_from_tip: Vec<_> = set.vectors.iter().map(|v| chain.forward(v)).collect();
+            base_from_tip.push(robotc_core::Pose::translation(9.0, 0.0, 0.0));
+            let given = set.vectors.iter().flat_map(|v| compiled.free.iter().map(|k| v[*k]));
+            let free: Vec<f64> = given.chain(compiled.free.iter().map(|_| 0.0)).collect();
+            let (mut batch, mut out) = (Batch::default(), IkSolutions::new());
+            solver.solve_batch(&base_from_tip, &free, &mut batch);
+            assert_eq!(batch.len(), base_from_tip.len());
+            for (i, pose) in base_from_tip.iter().enumerate() {
+                let n = compiled.free.len();
+                solver.solve(pose, &free[i * n..(i + 1) * n], &mut out);
+                assert!(batch.solutions(i).eq(out.iter()), "{} {} {i}", chain.name, set.name);
+            }
+        }
+    }
 }
 
 #[test]

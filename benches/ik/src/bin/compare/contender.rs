@@ -19,6 +19,11 @@ pub trait Contender {
     /// Brings the poses into the form that the solver takes; not timed.
     fn load(&mut self, tasks: &[Task]);
 
+    /// Poses solved by one call: the time of a call is shared out among them.
+    fn group(&self) -> usize {
+        1
+    }
+
     /// Solves the pose of this number; returns the number of answers.
     fn solve(&mut self, task: usize) -> usize;
 
@@ -49,7 +54,8 @@ macro_rules! contender {
                 for task in tasks {
                     let (r, p) = (&task.rotation, &task.position);
                     let row = |i: usize| [r[(i, 0)], r[(i, 1)], r[(i, 2)]];
-                    let pose = $module::Frame { rotation: [row(0), row(1), row(2)], position: [p.x, p.y, p.z] };
+                    let pose =
+                        $module::Frame { rotation: [row(0), row(1), row(2)], position: [p.x, p.y, p.z] };
                     self.tasks.push((pose, task.free[..].try_into().expect("one value each")));
                 }
             }

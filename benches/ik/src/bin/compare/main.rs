@@ -42,11 +42,11 @@ fn race(arm: &Arm, compiled: &Compiled, count: usize) -> Vec<Row> {
     let mut entrants: Vec<Entrant> = generated::all()
         .into_iter()
         .filter(|g| g.arm == arm.name)
-        .map(|g| Entrant { name: format!("robotc {}", g.flavour), solver: g.solver, batch: None })
+        .map(|g| Entrant { name: format!("robotc {}", g.flavour), solver: g.solver })
         .collect();
     entrants.extend(ours::entrants(compiled));
     let mut peer = |name: &str, solver: Box<dyn Contender>| {
-        entrants.push(Entrant { name: name.into(), solver, batch: None });
+        entrants.push(Entrant { name: name.into(), solver });
     };
     if arm.name == KR6.name {
         peer("ik-geo", Box::new(IkGeo::new(arm, &Class::SphericalTwoParallel)));

@@ -16,9 +16,13 @@ pub fn markdown(rows: &[Row], count: usize) -> String {
     for row in rows {
         if row.arm != arm {
             arm = row.arm;
-            let _ = writeln!(out, "\n## {arm}\n\n| set | solver | median ns | ratio | solved | recovered | wrong | mean solutions |\n|---|---|---:|---:|---:|---:|---:|---:|");
+            let _ = writeln!(
+                out,
+                "\n## {arm}\n\n| set | solver | median ns | ratio | solved | recovered | wrong | mean solutions |\n|---|---|---:|---:|---:|---:|---:|---:|"
+            );
         }
-        let peer = rows.iter().find(|r| r.arm == row.arm && r.set == row.set && !r.solver.starts_with("robotc"));
+        let peer =
+            rows.iter().find(|r| r.arm == row.arm && r.set == row.set && !r.solver.starts_with("robotc"));
         let ratio = peer.map_or(String::new(), |peer| format!("{:.2}", row.median_ns / peer.median_ns));
         let _ = write!(out, "| {} | {} | {:.0} | {ratio} |", row.set, row.solver, row.median_ns);
         if row.mean_solutions == 0.0 && row.solved == 0 && row.wrong == 0 && row.solver.contains(" on ") {
@@ -26,7 +30,11 @@ pub fn markdown(rows: &[Row], count: usize) -> String {
             continue;
         }
         let recovered = row.recovered.map_or(String::new(), |n| format!("{n}"));
-        let _ = writeln!(out, " {}/{} | {recovered} | {} | {:.2} |", row.solved, row.poses, row.wrong, row.mean_solutions);
+        let _ = writeln!(
+            out,
+            " {}/{} | {recovered} | {} | {:.2} |",
+            row.solved, row.poses, row.wrong, row.mean_solutions
+        );
     }
     out
 }

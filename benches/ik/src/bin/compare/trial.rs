@@ -13,10 +13,8 @@ use crate::contender::{Contender, Task};
 pub struct Entrant {
     /// Its name in the table.
     pub name: String,
-    /// What is called for one pose.
+    /// What is called.
     pub solver: Box<dyn Contender>,
-    /// What is called for all of them at once, if that is how it is timed; returns the number of answers.
-    pub batch: Option<Box<dyn FnMut() -> usize>>,
 }
 
 /// What one solver did on one set.
@@ -45,7 +43,14 @@ pub struct Row {
 const TOLERANCE: f64 = 1e-6;
 
 /// Times and judges all solvers; a peer that solves another arm is not judged.
-pub fn run(arm: &Arm, chain: &SerialChain, set: &PoseSet, tasks: &[Task], entrants: &mut [Entrant], all_judged: bool) -> Vec<Row> {
+pub fn run(
+    arm: &Arm,
+    chain: &SerialChain,
+    set: &PoseSet,
+    tasks: &[Task],
+    entrants: &mut [Entrant],
+    all_judged: bool,
+) -> Vec<Row> {
     for entrant in entrants.iter_mut() {
         entrant.solver.load(tasks);
     }
@@ -54,11 +59,17 @@ pub fn run(arm: &Arm, chain: &SerialChain, set: &PoseSet, tasks: &[Task], entran
     for _ in 0..5 {
         for task in 0..tasks.len() {
             for (entrant, fastest) in entrants.iter_mut().zip(&mut fastest) {
+                let group = entrant.solver.group();
+                if task % group != 0 {
+                    continue;
+                }
                 let start = Instant::now();
                 let found = entrant.solver.solve(task);
                 let elapsed = start.elapsed().as_nanos() as f64 - clock;
                 std::hint::black_box(found);
-                fastest[task] = fastest[task].min(elapsed);
+                let end = (task + group).min(tasks.len());
+                let share = elapsed / (end - task) as f64;
+                fastest[task..end].iter_mut().for_each(|t| *t = t.min(share));
             }
         }
     }
@@ -87,7 +98,8 @@ pub fn run(arm: &Arm, chain: &SerialChain, set: &PoseSet, tasks: &[Task], entran
             row.wrong += answers.len() - right;
             row.mean_solutions += answers.len() as f64 / tasks.len() as f64;
             if let Some(recovered) = &mut row.recovered {
-                *recovered += usize::from(answers.iter().any(|q| check::same(q, &task.joints, &slides, 1e-6)));
+                *recovered +=
+                    usize::from(answers.iter().any(|q| check::same(q, &task.joints, &slides, 1e-6)));
             }
         }
         rows.push(row);
