@@ -1,8 +1,10 @@
-//! Compiles every arm of a folder with an `INDEX.tsv` and prints a table: class, or the reason why not, and the proof.
+//! Compiles every arm of a folder with an `INDEX.tsv`, proves it, and prints a table in Markdown: what was solved of each set,
+//! then class and time of each arm, or the reason why it is refused. `cargo xtask ik-zoo` stores it.
 //!
-//! `cargo run --release -p robotc-ikgen --example zoo -- FOLDER [POSES] [FILTER]`
+//! `cargo run --release -p robotc-ikgen --example zoo -- FOLDER [POSES] [FILTER] [--detail]`: only arms whose name contains FILTER;
+//! details are all sets, the search and the program.
 
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
 use std::path::Path;
 use std::time::Instant;
@@ -10,7 +12,7 @@ use std::time::Instant;
 use robotc_core::system::{ReadError, System};
 use robotc_core::urdf::{LoadOptions, MeshPolicy, load};
 use robotc_core::{Kinematics, SerialChain, Sources};
-use robotc_ikgen::report::{ProofOptions, prove};
+use robotc_ikgen::report::{ProofOptions, Report, SetReport, prove};
 use robotc_ikgen::{Options, compile};
 
 struct Files;
@@ -25,6 +27,29 @@ impl System for Files {
     }
 }
 
+fn main() {
+    let (options, arguments): (Vec<String>, Vec<String>) =
+        std::env::args().skip(1).partition(|a| a.starts_with("--"));
+    let folder = Path::new(arguments.first().map_or("../shared/data/arms", String::as_str));
+    let poses = arguments.get(1).and_then(|n| n.parse().ok()).unwrap_or(200);
+    let filter = arguments.get(2).map_or("", String::as_str);
+    let index = std::fs::read_to_string(folder.join("INDEX.tsv")).expect("the folder has an INDEX.tsv");
+    let mut arms: Vec<(String, Report)> = Vec::new();
+    for line in index.lines().skip(1) {
+        let field: Vec<&str> = line.split('\t').collect();
+        let name = field[0].trim_end_matches(".urdf");
+        if name.contains(filter) {
+            eprintln!("{name}");
+            let chain = chain(&folder.join(field[0]), field[4], field[5]);
+            let chain =
+                chain.unwrap_or_else(|| panic!("{name} has a chain from {} to {}", field[4], field[5]));
+            arms.push((name.into(), arm(&chain, poses, !options.is_empty())));
+        }
+    }
+    summary(&arms, poses);
+    table(&arms);
+}
+
 fn chain(path: &Path, base: &str, tip: &str) -> Option<SerialChain> {
     let options = LoadOptions { meshes: MeshPolicy::Ignore, ..LoadOptions::default() };
     let (model, _) = load(&Files, &mut Sources::new(), path, &options);
@@ -33,68 +58,78 @@ fn chain(path: &Path, base: &str, tip: &str) -> Option<SerialChain> {
     SerialChain::between(&kinematics, link(base)?, link(tip)?).ok()
 }
 
-fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let folder = Path::new(arguments.first().map_or("../shared/data/arms", String::as_str));
-    let poses = arguments.get(1).and_then(|n| n.parse().ok()).unwrap_or(200);
-    let filter = arguments.get(2).map_or("", String::as_str);
-    let index = std::fs::read_to_string(folder.join("INDEX.tsv")).expect("the folder has an INDEX.tsv");
+fn arm(chain: &SerialChain, poses: usize, detail: bool) -> Report {
     let clock = Instant::now();
     let now = || clock.elapsed().as_secs_f64();
-    let (mut arms, mut solved) = (0, 0);
-    for line in index.lines().skip(1) {
-        let field: Vec<&str> = line.split('\t').collect();
-        if !field[0].contains(filter) {
-            continue;
+    let result = compile(chain, &Options::default());
+    let seconds = now();
+    let (report, trace, program) = match &result {
+        Err(refusal) => (Report::refused(refusal, seconds), &refusal.trace, String::new()),
+        Ok(compiled) => {
+            let report = prove(compiled, seconds, &ProofOptions { poses, seed: 1 }, &now);
+            (report, &compiled.trace, compiled.text())
         }
-        arms += 1;
-        let name = field[0].trim_end_matches(".urdf");
-        let Some(chain) = chain(&folder.join(field[0]), field[4], field[5]) else {
-            println!("{name:32} no chain from {} to {}", field[4], field[5]);
-            continue;
-        };
-        let start = now();
-        let result = compile(&chain, &Options::default());
-        let seconds = now() - start;
-        match result {
-            Err(refusal) => {
-                println!("{name:32} REFUSED {} [{}]", refusal.reason, field[7]);
-                if arguments.len() > 3 {
-                    refusal.trace.iter().for_each(|l| println!("    {l}"));
-                }
-            }
-            Ok(compiled) => {
-                let report = prove(&compiled, seconds, &ProofOptions { poses, seed: 1 }, &now);
-                solved += usize::from(report.emitted);
-                println!(
-                    "{name:32} {} | snap {:.1e} | {:.0} ms | {} B {}",
-                    report.class,
-                    report.snap_max,
-                    1e3 * seconds,
-                    report.source_bytes,
-                    report.reason
-                );
-                for s in report.sets.iter().filter(|s| s.poses > 0) {
-                    let flag = if s.solved < s.poses || s.wrong > 0 { "  <--" } else { "" };
-                    println!(
-                        "    {:9} solved {}/{} recovered {} wrong {} error {:.1e} mean {:.2} median {:.0} ns p99 {:.0} ns{flag}",
-                        s.name,
-                        s.solved,
-                        s.poses,
-                        s.recovered,
-                        s.wrong,
-                        s.max_error,
-                        s.mean_solutions,
-                        s.median_ns,
-                        s.p99_ns
-                    );
-                }
-                if arguments.len() > 3 {
-                    println!("{}", compiled.text());
-                    compiled.trace.iter().for_each(|l| println!("    {l}"));
-                }
-            }
-        }
+    };
+    if detail {
+        report.sets.iter().for_each(|set| println!("{set:?}"));
+        trace.iter().for_each(|line| println!("{line}"));
+        println!("{program}");
     }
-    println!("{solved} of {arms} arms solved");
+    report
+}
+
+fn summary(arms: &[(String, Report)], poses: usize) {
+    let solved = arms.iter().filter(|(_, r)| r.emitted).count();
+    println!("# Every arm of a collection\n");
+    println!(
+        "`cargo xtask ik-zoo FOLDER {poses}`: {solved} of {} arms solved, {poses} poses a set at most.\n",
+        arms.len()
+    );
+    println!("| set | solved | recovered | wrong |\n|---|---|---|---|");
+    for name in ["random", "wrist", "elbow", "shoulder", "zero", "grid90", "near"] {
+        let sum = |f: fn(&SetReport) -> usize| -> usize {
+            arms.iter().filter_map(|(_, r)| r.set(name)).map(f).sum()
+        };
+        let recovered = if name == "random" { sum(|s| s.recovered).to_string() } else { "-".into() };
+        println!(
+            "| {name} | {} of {} | {recovered} | {} |",
+            sum(|s| s.solved),
+            sum(|s| s.poses),
+            sum(|s| s.wrong)
+        );
+    }
+    println!();
+}
+
+fn table(arms: &[(String, Report)]) {
+    println!(
+        "*Missing*: poses of a set without a solution, and random joint vectors that were not among the answers. Times are those of a"
+    );
+    println!("random pose: all solutions, with the check, by the bytecode.\n");
+    println!("| arm | class, or why it is refused | missing | wrong | median | generated in | Rust |");
+    println!("|---|---|---|---|---|---|---|");
+    for (name, r) in arms {
+        if r.sets.is_empty() {
+            println!("| {name} | refused: {} | | | | {:.2} s | |", r.reason, r.generation_s);
+            continue;
+        }
+        let mut missing: Vec<String> = Vec::new();
+        for s in &r.sets {
+            if s.solved < s.poses {
+                missing.push(format!("{} {}", s.name, s.poses - s.solved));
+            }
+            if s.name == "random" && s.recovered < s.solved {
+                missing.push(format!("recovered {}", s.solved - s.recovered));
+            }
+        }
+        let wrong: usize = r.sets.iter().map(|s| s.wrong).sum();
+        let median = r.set("random").map_or(0.0, |s| s.median_ns / 1e3);
+        println!(
+            "| {name} | {} | {} | {wrong} | {median:.1} us | {:.2} s | {} KB |",
+            r.class,
+            missing.join(", "),
+            r.generation_s,
+            r.source_bytes / 1000
+        );
+    }
 }
