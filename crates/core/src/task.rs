@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use crate::Pose;
-use crate::model::{Configuration, Geometry};
+use crate::ids::{DofIdx, LinkIdx};
+use crate::model::{Configuration, Geometry, RobotModel};
 use crate::robot::Robot;
 
 /// A checked task specification.
@@ -21,8 +22,10 @@ pub struct Task {
     pub start: Configuration,
     /// Things that can be moved, in specification order.
     pub objects: Vec<Object>,
-    /// Things that cannot.
+    /// Things that cannot: those of the specification in order, then the links of articles.
     pub obstacles: Vec<Obstacle>,
+    /// Things with a joint of their own, in specification order.
+    pub articles: Vec<Article>,
     /// What shall happen, in order.
     pub goals: Vec<Goal>,
     /// Root of all randomness of the task.
@@ -53,6 +56,35 @@ pub struct Obstacle {
     pub geometry: Arc<Vec<Geometry>>,
     /// `world_from_obstacle`.
     pub world_from_obstacle: Pose,
+}
+
+/// A thing with a joint of its own: a door, a drawer, a lever. Its links are obstacles of the task as well, where they stand at
+/// the start.
+#[derive(Debug, Clone)]
+pub struct Article {
+    /// Unique among objects, obstacles and articles.
+    pub name: String,
+    /// Its links and joints.
+    pub model: Arc<RobotModel>,
+    /// The joint that opens it.
+    pub dof: DofIdx,
+    /// The link that a gripper takes it by.
+    pub handle: LinkIdx,
+    /// Coulomb friction between handle and fingers.
+    pub friction: f64,
+    /// Where its root stands.
+    pub world_from_root: Pose,
+    /// The values of its joints at the start.
+    pub configuration: Configuration,
+    /// Its links with shapes, each with its position in [`Task::obstacles`].
+    pub bodies: Vec<(LinkIdx, usize)>,
+}
+
+impl Article {
+    /// The links with shapes that its joint moves, each with its position in [`Task::obstacles`].
+    pub fn moving_bodies(&self) -> impl Iterator<Item = (LinkIdx, usize)> {
+        self.bodies.iter().copied().filter(|(link, _)| self.model.dofs_moving(*link).contains(&self.dof))
+    }
 }
 
 /// Something that shall happen.

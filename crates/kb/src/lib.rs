@@ -22,6 +22,7 @@ pub mod compile;
 pub mod context;
 pub mod depot;
 pub mod explain;
+pub mod formats;
 pub mod graph;
 pub mod key;
 pub mod kind;

@@ -97,6 +97,15 @@ pub struct OfGripperAndObject {
     pub object: usize,
 }
 
+/// A gripper with an article of the task, a door or a drawer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OfGripperAndArticle {
+    /// Position in [`Robot::grippers`].
+    pub gripper: usize,
+    /// Position in [`Task::articles`].
+    pub article: usize,
+}
+
 /// Anything with a shape: what collision geometry is computed for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OfShape {
@@ -160,6 +169,20 @@ impl Subject for OfGripperAndObject {
 
     fn label(&self, project: &Project) -> String {
         format!("{}+{}", OfGripper(self.gripper).label(project), OfObject(self.object).label(project))
+    }
+}
+
+impl Subject for OfGripperAndArticle {
+    fn all(project: &Project) -> Vec<Self> {
+        let articles = project.task.as_ref().map_or(0, |task| task.articles.len());
+        let of_gripper = |OfGripper(gripper)| (0..articles).map(move |article| Self { gripper, article });
+        OfGripper::all(project).into_iter().flat_map(of_gripper).collect()
+    }
+
+    fn label(&self, project: &Project) -> String {
+        let task = project.task.as_ref().expect("articles belong to a task");
+        let article = word(&task.articles[self.article].name);
+        format!("{}+{}/{article}", OfGripper(self.gripper).label(project), word(&task.name))
     }
 }
 

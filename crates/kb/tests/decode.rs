@@ -11,7 +11,7 @@ use robotc_kb::{Graph, Kind, Store, codec, compile, kinds};
 #[test]
 fn decoders_are_total_and_canonical() {
     let folder = tempfile::tempdir().expect("a folder");
-    let graph = Arc::new(Graph::plan(&support::spec().project()).expect("a graph"));
+    let graph = Arc::new(Graph::plan(&support::spec_with_door().project()).expect("a graph"));
     let store = Arc::new(Store::open(folder.path()).expect("a store"));
     assert!(compile(&graph, &store, &()).expect("it works").complete());
     let listed = store.list().expect("a list");
@@ -43,7 +43,8 @@ fn decoders_are_total_and_canonical() {
 fn numbers_that_are_none_are_refused() {
     let grasp = |w: f64| {
         let (approach, contacts) = ([0.0, 0.0, 1.0], Vec::<[f64; 6]>::new());
-        let grasp = (0_u32, [0.0; 3], [0.0, 0.0, 0.0, w], approach, 0.1, vec![0.0], contacts, 0.5, 0.5);
+        let more = (None::<f64>, Some([0.01, 1.0]));
+        let grasp = (0_u32, [0.0; 3], [0.0, 0.0, 0.0, w], approach, 0.1, vec![0.0], contacts, 0.5, more, 0.5);
         GraspSet::decode(&codec::encode(&vec![grasp])).is_ok()
     };
     assert!(grasp(1.0) && !grasp(f64::NAN) && !grasp(0.5));

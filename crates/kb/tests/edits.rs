@@ -214,7 +214,7 @@ fn artefacts_repeat_with_any_number_of_threads_in_any_folder() {
     let lock = |threads: usize| {
         let folder = tempfile::tempdir().expect("a folder");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        let graph = Arc::new(Graph::plan(&support::spec().project()).expect("a graph"));
+        let graph = Arc::new(Graph::plan(&support::spec_with_door().project()).expect("a graph"));
         let store = Arc::new(Store::open(folder.path()).expect("a store"));
         let report = pool.install(|| compile(&graph, &store, &()).expect("it works"));
         assert!(report.complete());

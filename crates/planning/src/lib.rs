@@ -40,7 +40,7 @@ pub use constraint::{Constraint, HeldMechanism, RegionError, RegionTolerance, Ta
 pub use edge::{Blocked, EdgeChecker, Obstruction};
 pub use explore::{ExploreFailure, ExploreOptions, ExploreSolution, FixedMotion, explore, make_way};
 pub use goal::{FixedGoals, GoalDraw, GoalSampler};
-pub use grasp::{Contact, Grasp, GraspSet};
+pub use grasp::{Contact, Grasp, GraspSet, Steadiness};
 pub use jitter::{JitterFailure, JitterOptions, Jittered, jitter};
 pub use mechanism::{Mechanism, MechanismMotion};
 pub use problem::{PathPlanner, PlanningProblem, Registry, solve};

@@ -2,6 +2,8 @@
 
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 use robotc_core::Pose;
+use robotc_core::model::{Joint, JointMotion, Kinematics};
+use robotc_core::task::Article;
 use serde::{Deserialize, Serialize};
 
 /// How a mechanism moves along its axis, the z axis of its frame.
@@ -26,6 +28,31 @@ pub struct Mechanism {
 }
 
 impl Mechanism {
+    /// What the joint of an article does, with its other joints where they are at the start; `None` for a joint that neither turns
+    /// nor slides.
+    pub fn of_article(article: &Article) -> Option<Self> {
+        let dof = &article.model.dofs()[article.dof];
+        let joint = &article.model.joints()[dof.joint];
+        let motion = match joint.motion {
+            JointMotion::Revolute => MechanismMotion::Hinge,
+            JointMotion::Prismatic => MechanismMotion::Slide,
+            JointMotion::Fixed => return None,
+        };
+        let kinematics = Kinematics::new(article.model.clone());
+        let root_from_parent = kinematics.root_from_link(&article.configuration, joint.parent);
+        let world_from_rest = article.world_from_root * root_from_parent * joint.parent_from_joint();
+        let world_from_axis = world_from_rest * Self::link_from_axis(joint);
+        Some(Self { world_from_axis, motion, range: (dof.lower, dof.upper) })
+    }
+
+    /// The axis frame, moved with the part, in the frame of the link that a joint moves: a turn that takes z to the joint's axis.
+    pub fn link_from_axis(joint: &Joint) -> Pose {
+        let turn = UnitQuaternion::rotation_between(&Vector3::z(), joint.unit_axis());
+        let turn =
+            turn.unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
+        Pose::from_parts(Translation3::identity(), turn)
+    }
+
     /// `world_from_part` at `value`: the axis frame, moved with the part.
     pub fn world_from_part(&self, value: f64) -> Pose {
         self.world_from_axis * self.axis_from_part(value)

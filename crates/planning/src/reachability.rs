@@ -63,6 +63,8 @@ mod tests {
             closed: vec![],
             contacts: vec![],
             epsilon: 0.1,
+            volume: None,
+            steadiness: None,
             score,
         };
         let set = GraspSet::new("hand", "box", vec![grasp(-0.5, 0.9), grasp(0.5, 0.5), grasp(0.6, 0.8)]);

@@ -5,6 +5,7 @@ mod check;
 mod compile;
 mod explain;
 mod graph;
+mod grasps;
 mod ik;
 mod init;
 mod kb;
@@ -24,6 +25,7 @@ pub(crate) enum Command {
     Compile(compile::Compile),
     Explain(explain::Explain),
     Graph(graph::Graph),
+    Grasps(grasps::Grasps),
     Ik(ik::Ik),
     Init(init::Init),
     Kb(kb::Kb),
@@ -41,6 +43,7 @@ pub(crate) fn run(command: Command) -> Outcome {
         Command::Compile(args) => compile::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Graph(args) => graph::run(&args),
+        Command::Grasps(args) => grasps::run(&args),
         Command::Ik(args) => ik::run(&args),
         Command::Init(args) => init::run(&args),
         Command::Kb(args) => kb::run(&args),

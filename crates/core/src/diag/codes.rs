@@ -526,6 +526,16 @@ pub const CODES: &[CodeInfo] = &[
         "unusual size",
         "The mesh is smaller than 2 mm or larger than 10 m. Most often its unit is not metres; write `units`.",
     ),
+    entry(
+        "R0508",
+        "handle does not move",
+        "The handle of an `[[article]]` has to move with the joint that opens it, or pulling at it opens nothing.",
+    ),
+    entry(
+        "R0509",
+        "open surface",
+        "The triangles of the mesh do not close a surface, so it has no definite inside. Collision checks and grasps take the          convex parts that cover it instead, and so does its centre of mass. Close it in the program that wrote it if that matters.",
+    ),
 ];
 
 #[cfg(test)]

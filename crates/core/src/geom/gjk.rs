@@ -115,6 +115,39 @@ impl<'a> Pair<'a> {
         }
         simplex.apart(v.norm())
     }
+
+    /// A unit direction from a to b, in the frame of a, with the gap along it: at least `1 - relative` times the distance.
+    /// `None` when the parts overlap or are too near to tell.
+    pub(super) fn separation(&self, relative: f64) -> Option<(Vector3<f64>, f64)> {
+        let (centre_a, _) = self.a.bounding_sphere();
+        let (centre_b, _) = self.b.bounding_sphere();
+        let between = self.a_from_b * centre_b.coords + self.b_origin_in_a - centre_a.coords;
+        let start = if between.norm_squared() > 0.0 { between } else { Vector3::x() };
+        let mut simplex = Simplex::new(self.support(&start));
+        let mut v = simplex.corners[0].w;
+        let mut best = (Vector3::zeros(), TOUCHING);
+        for _ in 0..MAX_ROUNDS {
+            let length = v.norm();
+            if length <= TOUCHING {
+                return None;
+            }
+            let corner = self.support(&-v);
+            let gap = corner.w.dot(&v) / length;
+            if gap > best.1 {
+                best = (-v / length, gap);
+            }
+            if length - best.1 <= relative * length || simplex.has(&corner.w) {
+                break;
+            }
+            simplex.push(corner);
+            match simplex.reduce() {
+                None => return None,
+                Some(nearer) if nearer.norm_squared() < v.norm_squared() => v = nearer,
+                Some(_) => break,
+            }
+        }
+        (best.1 > TOUCHING).then_some(best)
+    }
 }
 
 /// One to four corners, with the weights of the point of their hull nearest to the origin.

@@ -10,6 +10,7 @@ mod decompose;
 mod gjk;
 mod hull;
 mod mesh_index;
+mod padding;
 mod part;
 mod parts;
 mod penetration;
@@ -24,9 +25,12 @@ pub use aabb::Aabb;
 pub use decompose::{DecomposeOptions, decompose};
 pub use hull::HullError;
 pub use mesh_index::{MeshIndex, NearestPoint, RayHit};
+pub use padding::{PaddedPart, PaddedParts, outside_of_bodies};
 pub use part::{ConvexPart, PartError, Plane};
 pub use parts::ConvexParts;
 pub use primitive::{box_part, capsule_part, cylinder_part, sphere_part};
-pub use query::{Contact, Distance, any_within, contact, distance, intersects, within};
+pub use query::{
+    Contact, Distance, Separation, any_within, contact, distance, intersects, separation, within,
+};
 pub use shape::{parts_of, parts_of_shape};
 pub use surface::surface;

@@ -8,6 +8,7 @@
 
 mod annotations;
 mod arms;
+mod articles;
 mod check;
 mod describe;
 mod document;

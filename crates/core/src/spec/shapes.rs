@@ -82,6 +82,13 @@ impl<'a> Shapes<'a> {
                 .at(place, "this mesh"),
             );
         }
+        if !loaded.mesh.is_closed() {
+            diagnostics.push(
+                Diagnostic::warning("R0509", format!("the surface of mesh {} is not closed", path.display()))
+                    .at(place, "this mesh")
+                    .hint("what is inside is taken from the convex parts that cover it"),
+            );
+        }
         let up = match up.as_deref() {
             Some("y") => UpAxis::Y,
             Some(_) => UpAxis::Z,

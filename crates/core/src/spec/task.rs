@@ -6,12 +6,12 @@ use super::document::{Node, Table};
 use super::file::{self, SpecFile};
 use super::robot::{self, RobotSpec};
 use super::shapes::Shapes;
-use super::{ParameterTable, Parameters, SpecKind, goals, lookup};
+use super::{ParameterTable, Parameters, SpecKind, articles, goals, lookup};
 use crate::diag::{Diagnostic, Diagnostics, Sources, Span};
 use crate::model::Configuration;
 use crate::robot::Robot;
 use crate::system::System;
-use crate::task::{Goal, Object, Obstacle, Task};
+use crate::task::{Article, Goal, Object, Obstacle, Task};
 
 /// A checked task specification.
 #[derive(Debug, Clone)]
@@ -45,7 +45,7 @@ pub fn load_task(
         diagnostics.extend(found);
         robot
     });
-    let task = read(system, &opened, robot.as_ref(), &mut diagnostics);
+    let task = read(system, sources, &opened, robot.as_ref(), &mut diagnostics);
     let spec = task.zip(robot).map(|(task, robot)| {
         let own = file::read_parameters(&opened.table, parameters);
         TaskSpec { task, parameters: robot.parameters.overlaid(&own), robot, path: path.to_owned() }
@@ -56,6 +56,7 @@ pub fn load_task(
 /// The task, as far as it can be read; objects and goals are checked even without a robot.
 fn read(
     system: &dyn System,
+    sources: &mut Sources,
     file: &SpecFile,
     robot: Option<&RobotSpec>,
     diagnostics: &mut Diagnostics,
@@ -85,9 +86,13 @@ fn read(
             world_from_obstacle: lookup::origin(obstacle, "pose").pose(),
         });
     }
+    let standing = obstacles.clone();
+    let mut read_article =
+        |(t, _): (&Table, Span)| articles::read(system, sources, file, t, &mut obstacles, diagnostics);
+    let articles: Vec<Article> = table.tables("article").filter_map(&mut read_article).collect();
     let goals: Vec<Goal> = table
         .tables("goal")
-        .filter_map(|(goal, _)| goals::read(goal, &objects, &obstacles, diagnostics))
+        .filter_map(|(goal, _)| goals::read(goal, &objects, &standing, diagnostics))
         .collect();
     let robot = &robot?.robot;
     let arm = arm(table, file.place, robot, diagnostics);
@@ -100,6 +105,7 @@ fn read(
         start,
         objects,
         obstacles,
+        articles,
         goals,
         seed: table
             .get("seed")
@@ -109,18 +115,21 @@ fn read(
     })
 }
 
-/// Objects and obstacles share their names; the schema has looked at each kind for itself.
+/// Objects, obstacles and articles share their names; the schema has looked at each kind for itself.
 fn unique_names(table: &Table, diagnostics: &mut Diagnostics) {
-    let objects: Vec<&str> =
-        table.tables("object").filter_map(|(t, _)| t.text("name")).map(|(name, _)| name).collect();
-    for (name, place) in table.tables("obstacle").filter_map(|(t, _)| t.text("name")) {
-        if objects.contains(&name) {
-            diagnostics.push(
-                Diagnostic::error("R0107", format!("an object and an obstacle are called \"{name}\""))
-                    .at(place, "used before")
-                    .expected("a `name` of its own for each"),
-            );
+    let mut before: Vec<(&str, &str)> = Vec::new();
+    for (key, kind) in [("object", "an object"), ("obstacle", "an obstacle"), ("article", "an article")] {
+        let named: Vec<(&str, Span)> = table.tables(key).filter_map(|(t, _)| t.text("name")).collect();
+        for (name, place) in &named {
+            if let Some((_, other)) = before.iter().find(|(known, _)| known == name) {
+                diagnostics.push(
+                    Diagnostic::error("R0107", format!("{other} and {kind} are called \"{name}\""))
+                        .at(*place, "used before")
+                        .expected("a `name` of its own for each"),
+                );
+            }
         }
+        before.extend(named.iter().map(|(name, _)| (*name, kind)));
     }
 }
 

@@ -6,7 +6,8 @@ const SIZE: Kind = Kind::List(&Kind::Number(Range::POSITIVE), Length::Exactly(3)
 const SHAPES: Rule = Rule::ExactlyOne(&["mesh", "box", "cylinder", "capsule", "sphere"]);
 const MESH_ONLY: Rule = Rule::OnlyWith { keys: &["units", "up", "scale"], with: "mesh" };
 
-const NAME: Key = Key::required("name", Kind::Text(Text::Name), "Name, unique among objects and obstacles.");
+const NAME: Key =
+    Key::required("name", Kind::Text(Text::Name), "Name, unique among objects, obstacles and articles.");
 const MESH: Key =
     Key::optional("mesh", Kind::Text(Text::Path), "STL, OBJ or COLLADA file, relative to this file.");
 const UNITS: Key = Key::optional(
@@ -50,6 +51,11 @@ pub(super) static TASK: TableSchema = TableSchema {
         .unit("rad or m"),
         Key::optional("object", Kind::Tables(&OBJECT, Some("name")), "Something that can be grasped and moved."),
         Key::optional("obstacle", Kind::Tables(&OBSTACLE, Some("name")), "Something that stays where it is."),
+        Key::optional(
+            "article",
+            Kind::Tables(&ARTICLE, Some("name")),
+            "Something with a joint of its own: a door, a drawer, a lever.",
+        ),
         Key::required("goal", Kind::Tables(&GOAL, None), "What shall happen; several goals happen in order."),
         Key::optional(
             "parameters",
@@ -99,6 +105,38 @@ static OBSTACLE: TableSchema = TableSchema {
     doc: "Something that stays where it is.",
     keys: &[NAME, MESH, UNITS, UP, SCALE, BOX, CYLINDER, CAPSULE, SPHERE, COLOUR, WORLD_POSE],
     rules: &[SHAPES, MESH_ONLY],
+};
+
+static ARTICLE: TableSchema = TableSchema {
+    doc: "Something with a joint of its own. Its links are obstacles where they stand; caging grasps are computed for it.",
+    keys: &[
+        NAME,
+        Key::required(
+            "description",
+            Kind::Text(Text::Path),
+            "URDF or xacro file of it, relative to this file.",
+        ),
+        Key::required("joint", Kind::Text(Text::Joint), "The joint that opens it."),
+        Key::optional(
+            "handle",
+            Kind::Text(Text::Link),
+            "The link that a gripper takes it by. Default: the one that the joint moves.",
+        ),
+        Key::optional(
+            "value",
+            Kind::Number(Range::ANY),
+            "Where the joint stands at the start. Default: zero, or what is nearest to it within the limits.",
+        )
+        .unit("rad or m"),
+        Key::optional(
+            "friction",
+            Kind::Number(Range::between(0.0, 10.0)),
+            "Coulomb friction between handle and fingers.",
+        )
+        .default("0.5"),
+        WORLD_POSE,
+    ],
+    rules: &[],
 };
 
 static GOAL: TableSchema = TableSchema {

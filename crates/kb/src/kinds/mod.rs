@@ -1,13 +1,16 @@
 //! The artefact kinds: one file each, one line each in [`ALL`].
 
+mod caging_set;
 mod chain_reach;
 mod convex_parts;
 mod grasp_set;
+mod grip;
 mod ik_solver;
 mod link_statistics;
 mod reachability;
 mod self_collision_pairs;
 
+pub use caging_set::{Cage, CageHold, CagingParameters, CagingSet};
 pub use chain_reach::{ChainReach, ReachSphere};
 pub use convex_parts::{ConvexParts, ConvexPartsParameters};
 pub use grasp_set::{GraspParameters, GraspSet};
@@ -29,6 +32,7 @@ pub const ALL: &[&dyn AnyKind] = &[
     &Entry::<SelfCollisionPairs>::new(),
     &Entry::<Reachability>::new(),
     &Entry::<GraspSet>::new(),
+    &Entry::<CagingSet>::new(),
 ];
 
 /// The kind of this name.

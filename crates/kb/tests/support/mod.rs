@@ -9,7 +9,7 @@ use robotc_core::model::{
 };
 use robotc_core::robot::{Base, Preshape};
 use robotc_core::spec::{ParameterValue, RobotSpec, TaskSpec};
-use robotc_core::task::{Destination, Goal, Object, Obstacle};
+use robotc_core::task::{Article, Destination, Goal, Object, Obstacle};
 use robotc_core::{Arm, Gripper, Pose, Robot, Task};
 use robotc_kb::{Given, Project};
 
@@ -21,6 +21,7 @@ pub(crate) struct Spec {
     pub(crate) tool: Origin,
     pub(crate) object: Object,
     pub(crate) obstacle: Obstacle,
+    pub(crate) articles: Vec<Article>,
     pub(crate) given: Given,
 }
 
@@ -126,8 +127,46 @@ pub(crate) fn spec() -> Spec {
             geometry: Arc::new(vec![cuboid([1.0, 1.0, 0.04], [0.0; 3])]),
             world_from_obstacle: Pose::translation(0.6, 0.0, 0.2),
         },
+        articles: Vec::new(),
         given: coarse(),
     }
+}
+
+/// The same with a door that has a bar for a handle.
+#[allow(dead_code, reason = "not every test file needs it")]
+pub(crate) fn spec_with_door() -> Spec {
+    let mut builder = RobotBuilder::new("door");
+    let bar = cuboid([0.02, 0.02, 0.2], [0.08, 0.25, 0.1]);
+    let shapes = [
+        ("frame", cuboid([0.02, 0.02, 0.4], [0.0, -0.03, 0.2])),
+        ("leaf", cuboid([0.02, 0.3, 0.4], [0.0, 0.15, 0.2])),
+    ];
+    for (name, shape) in shapes.into_iter().chain([("bar", bar)]) {
+        builder.link(name, vec![], vec![shape], None);
+    }
+    let limits = (0.0, 1.5, false, DynamicLimits::DEFAULT);
+    let z = [0.0, 0.0, 1.0];
+    builder.moving("hinge", JointMotion::Revolute, "frame", "leaf", Origin::default(), z, limits, None);
+    builder.fixed("on_leaf", "leaf", "bar", Origin::default());
+    let model = Arc::new(builder.build().expect("a tree"));
+    let link = |name| model.link_named(name).expect("it exists");
+    let article = Article {
+        name: "door".into(),
+        dof: robotc_core::DofIdx::new(0),
+        handle: link("bar"),
+        friction: 0.5,
+        world_from_root: Pose::translation(0.8, 0.0, 0.0),
+        configuration: Configuration::neutral(&model),
+        // After the table.
+        bodies: vec![(link("frame"), 1), (link("leaf"), 2), (link("bar"), 3)],
+        model,
+    };
+    let mut spec = spec();
+    spec.articles = vec![article];
+    for (name, value) in [("approaches", 400), ("directions", 1), ("rolls", 4), ("needed", 5)] {
+        spec.given.set("caging_set", name, ParameterValue::Integer(value));
+    }
+    spec
 }
 
 /// Parameters that make maps and grasp sets small, so that tests are quick.
@@ -143,6 +182,17 @@ fn coarse() -> Given {
 }
 
 impl Spec {
+    /// The links of the articles as obstacles, all joints at zero and all links at the root.
+    fn bodies(&self) -> impl Iterator<Item = Obstacle> {
+        self.articles.iter().flat_map(|article| {
+            article.bodies.iter().map(|(link, _)| Obstacle {
+                name: format!("{}/{}", article.name, article.model.links()[*link].name),
+                geometry: Arc::new(article.model.links()[*link].collisions.clone()),
+                world_from_obstacle: article.world_from_root,
+            })
+        })
+    }
+
     /// The checked project.
     pub(crate) fn project(&self) -> Project {
         let mut builder = RobotBuilder::new(&self.robot_name);
@@ -195,7 +245,8 @@ impl Spec {
             world_from_robot: Pose::identity(),
             start: Configuration::neutral(&model),
             objects: vec![self.object.clone()],
-            obstacles: vec![self.obstacle.clone()],
+            obstacles: std::iter::once(self.obstacle.clone()).chain(self.bodies()).collect(),
+            articles: self.articles.clone(),
             goals: vec![Goal::Place {
                 object: 0,
                 destination: Destination::Pose {

@@ -47,6 +47,8 @@ fn grasps() -> GraspSet {
                 closed: vec![0.5 * SIZE[1]],
                 contacts: vec![],
                 epsilon: 0.1,
+                volume: None,
+                steadiness: None,
                 score,
             });
         }
@@ -100,6 +102,7 @@ fn bench(rail: bool, moves: &[([f64; 2], Goal)], obstacles: &[([f64; 3], [f64; 3
             start,
             objects,
             obstacles: vec![],
+            articles: vec![],
             goals: moves.iter().map(|(_, goal)| goal.clone()).collect(),
             seed: 1,
         },

@@ -3,9 +3,9 @@
 use nalgebra::Unit;
 use robotc_core::Pose;
 use robotc_core::geom::ConvexParts;
+use robotc_planning::grasp::Contact;
 
-use super::closure::PointContact;
-use super::surface::SurfacePoint;
+use crate::kinds::grip::surface::{Surface, SurfacePoint};
 
 /// What counts as touching.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,15 +24,15 @@ pub(super) struct PatchOptions {
 pub(super) fn patch(
     parts: &ConvexParts,
     object_from_link: &Pose,
-    surface: &[SurfacePoint],
+    surface: &Surface,
     options: &PatchOptions,
-) -> Vec<PointContact> {
+) -> Vec<Contact> {
     let Some(bounds) = parts.bounds() else { return Vec::new() };
     let reach = bounds.padded(options.gap + options.depth);
     let link_from_object = object_from_link.inverse();
     let centre_in_object = object_from_link * bounds.centre();
     let near: Vec<(f64, &SurfacePoint)> = surface
-        .iter()
+        .of_cubes(|cube, radius| reach.distance_to(&(link_from_object * cube)) <= radius)
         .filter_map(|s| {
             let point_in_link = link_from_object * s.point;
             reach.contains(&point_in_link).then(|| (parts.height(&point_in_link), s))
@@ -48,19 +48,19 @@ pub(super) fn patch(
         let inward = -s.normal.into_inner();
         let away = s.point - centre_in_object;
         let inward = if inward.dot(&away) >= 0.0 { inward } else { -inward };
-        touched.push(PointContact { point: s.point, inward: Unit::new_unchecked(inward) });
+        touched.push(Contact { point_in_object: s.point, normal_in_object: Unit::new_unchecked(inward) });
     }
     spread(touched, options.points)
 }
 
 /// At most `count` of the contacts, each the farthest from those taken before; the first is farthest from the mean.
-fn spread(contacts: Vec<PointContact>, count: usize) -> Vec<PointContact> {
+fn spread(contacts: Vec<Contact>, count: usize) -> Vec<Contact> {
     if contacts.len() <= count {
         return contacts;
     }
-    let mean =
-        contacts.iter().map(|c| c.point.coords).sum::<nalgebra::Vector3<f64>>() / contacts.len() as f64;
-    let mut distance: Vec<f64> = contacts.iter().map(|c| (c.point.coords - mean).norm()).collect();
+    let sum: nalgebra::Vector3<f64> = contacts.iter().map(|c| c.point_in_object.coords).sum();
+    let mean = nalgebra::Point3::from(sum / contacts.len() as f64);
+    let mut distance: Vec<f64> = contacts.iter().map(|c| (c.point_in_object - mean).norm()).collect();
     let mut chosen = Vec::with_capacity(count);
     for _ in 0..count {
         let mut farthest = 0;
@@ -74,7 +74,7 @@ fn spread(contacts: Vec<PointContact>, count: usize) -> Vec<PointContact> {
             distance.fill(f64::INFINITY);
         }
         for (d, c) in distance.iter_mut().zip(&contacts) {
-            *d = d.min((c.point - contacts[farthest].point).norm());
+            *d = d.min((c.point_in_object - contacts[farthest].point_in_object).norm());
         }
     }
     chosen
@@ -82,7 +82,6 @@ fn spread(contacts: Vec<PointContact>, count: usize) -> Vec<PointContact> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::surface::sample;
     use super::*;
     use nalgebra::Vector3;
     use robotc_core::geom::box_part;
@@ -93,11 +92,12 @@ mod tests {
         let pad = ConvexParts::new(vec![box_part(Vector3::new(0.01, 0.02, 0.02))]);
         let object_from_pad = Pose::translation(0.035 + 2e-4, 0.0, 0.0);
         let options = PatchOptions { depth: 1e-3, gap: 1e-3, points: 4 };
-        let contacts = patch(&pad, &object_from_pad, &sample(&object, 0.002), &options);
+        let contacts = patch(&pad, &object_from_pad, &Surface::new(&object, 0.002), &options);
         assert_eq!(contacts.len(), 4);
         for c in &contacts {
-            assert!((c.point.x - 0.03).abs() < 1e-9 && c.inward.x < -0.99);
-            assert!(c.point.y.abs() > 0.006 && c.point.z.abs() > 0.006, "{}", c.point);
+            let p = c.point_in_object;
+            assert!((p.x - 0.03).abs() < 1e-9 && c.normal_in_object.x < -0.99);
+            assert!(p.y.abs() > 0.006 && p.z.abs() > 0.006, "{p}");
         }
     }
 
@@ -107,7 +107,8 @@ mod tests {
         let pad = ConvexParts::new(vec![box_part(Vector3::new(0.01, 0.02, 0.02))]);
         let options = PatchOptions { depth: 1e-3, gap: 1e-3, points: 4 };
         assert!(
-            patch(&pad, &Pose::translation(0.04, 0.0, 0.0), &sample(&object, 0.002), &options).is_empty()
+            patch(&pad, &Pose::translation(0.04, 0.0, 0.0), &Surface::new(&object, 0.002), &options)
+                .is_empty()
         );
     }
 }

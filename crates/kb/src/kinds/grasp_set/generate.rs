@@ -1,16 +1,17 @@
 //! From approaches to a ranked grasp set.
 
 use nalgebra::Point3;
-use robotc_core::Seed;
 use robotc_core::geom::{ConvexParts, MeshIndex};
 use robotc_core::model::TriMesh;
-use robotc_planning::grasp::{Contact, Grasp};
+use robotc_core::{Pose, Seed};
+use robotc_planning::grasp::{Contact, ContactModel, Grasp, Steadiness, closes, epsilon, volume, wrenches};
 
-use super::closure::{ContactModel, PointContact, epsilon, wrenches};
 use super::contacts::{PatchOptions, patch};
-use super::hand::Hand;
-use super::strategy::{Approach, ClosedHand, Miss, Target, close_on};
-use super::surface::{ApproachOptions, SurfacePoint, approaches, sample};
+use super::coverage::{DIRECTIONS, direction_range};
+use super::steadiness::{Regrasp, SteadinessOptions, deviation, disturbances};
+use crate::kinds::grip::hand::Hand;
+use crate::kinds::grip::strategy::{Approach, ClosedHand, Miss, Start, close_on};
+use crate::kinds::grip::surface::{ApproachOptions, Surface, approaches};
 
 /// How a set is made.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,8 +28,10 @@ pub(super) struct GenerateOptions {
     pub(super) cone_edges: usize,
     /// Smallest epsilon of a grasp that is kept.
     pub(super) least_epsilon: f64,
-    /// Most grasps that are kept, best first.
-    pub(super) most_grasps: usize,
+    /// Whether the volumes of the wrench hulls are computed.
+    pub(super) volumes: bool,
+    /// How repeatability is tested.
+    pub(super) steadiness: SteadinessOptions,
 }
 
 /// What became of the approaches.
@@ -51,19 +54,27 @@ pub(super) struct Counts {
 /// Everything that trying an approach needs.
 pub(super) struct Generator<'a> {
     hand: &'a Hand<'a>,
-    target: Target<'a>,
-    surface: Vec<SurfacePoint>,
+    object: &'a ConvexParts,
+    surface: Surface,
     contact: ContactModel,
     options: &'a GenerateOptions,
+    disturbances: Vec<Pose>,
     /// The approaches to try.
     pub(super) approaches: Vec<Approach>,
+}
+
+/// A grasp with force closure, and how the hand came to it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Candidate {
+    grasp: Grasp,
+    start: Start,
 }
 
 /// What became of one approach.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Trial {
     /// Force closure.
-    Grasp(Box<Grasp>),
+    Grasp(Box<Candidate>),
     /// The contacts do not close, or too weakly.
     NoClosure,
     /// The strategy gave no closed hand.
@@ -71,66 +82,72 @@ pub(super) enum Trial {
 }
 
 impl<'a> Generator<'a> {
-    /// Prepares the trials, `seed` thins their approaches. Mesh, parts and centre of mass are in the object frame. `None` when the mesh is empty.
+    /// Prepares the trials; `seed` thins their approaches and disturbs the object. Mesh, parts and centre of mass are in the
+    /// object frame. `None` when the mesh is empty.
     pub(super) fn new(
         hand: &'a Hand<'a>,
         mesh: &TriMesh,
-        parts: &'a ConvexParts,
+        object: &'a ConvexParts,
         centre_of_mass: Point3<f64>,
         options: &'a GenerateOptions,
         seed: Seed,
     ) -> Option<Self> {
-        let (low, high) = mesh.bounds()?;
-        let centre = nalgebra::center(&low, &high);
-        let radius = mesh.vertices.iter().map(|v| (v - centre).norm()).fold(0.0, f64::max);
-        let surface = sample(mesh, options.surface_spacing);
-        let length = surface.iter().map(|s| (s.point - centre_of_mass).norm()).fold(0.0, f64::max);
+        let surface = Surface::new(mesh, options.surface_spacing);
+        let farthest = surface.points().iter().map(|s| (s.point - centre_of_mass).norm()).reduce(f64::max)?;
         let contact = ContactModel {
             friction: options.friction,
             cone_edges: options.cone_edges,
             centre: centre_of_mass,
-            length: length.max(f64::MIN_POSITIVE),
+            length: farthest.max(f64::MIN_POSITIVE),
         };
+        let disturbances = disturbances(&options.steadiness, &centre_of_mass, contact.length, seed);
         let approaches = approaches(mesh, &MeshIndex::new(mesh), &options.approaches, seed);
-        Some(Self { hand, target: Target { parts, centre, radius }, surface, contact, options, approaches })
+        Some(Self { hand, object, surface, contact, options, disturbances, approaches })
     }
 
     /// Runs the grasp strategy along one approach and judges its contacts.
     pub(super) fn attempt(&self, approach: &Approach) -> Trial {
-        let closed = match close_on(self.hand, &self.target, approach) {
+        let gripper = self.hand.gripper();
+        let start = approach.start(&gripper.approach_in_tool);
+        let closed = match close_on(self.hand, self.object, &start) {
             Ok(closed) => closed,
             Err(miss) => return Trial::Miss(miss),
         };
-        let contacts = contacts_of(self.hand, &closed, &self.surface, &self.options.patch);
-        let epsilon = match epsilon(&wrenches(&contacts, &self.contact)) {
-            Some(epsilon) if epsilon >= self.options.least_epsilon => epsilon,
+        let contacts = self.contacts_of(&closed);
+        let wrenches = wrenches(&contacts, &self.contact);
+        if !closes(&wrenches) {
+            return Trial::NoClosure;
+        }
+        let epsilon = match epsilon(&wrenches) {
+            Some(epsilon) if epsilon.lower >= self.options.least_epsilon => epsilon.lower,
             _ => return Trial::NoClosure,
         };
-        let contacts = contacts
-            .iter()
-            .map(|c| Contact { point_in_object: c.point, normal_in_object: c.inward })
-            .collect();
-        Trial::Grasp(Box::new(Grasp {
+        let grasp = Grasp {
             preshape: approach.preshape,
             object_from_tool: closed.object_from_tool,
-            approach_in_object: closed.object_from_tool.rotation * self.hand.gripper().approach_in_tool,
+            approach_in_object: closed.object_from_tool.rotation * gripper.approach_in_tool,
             standoff: approach.standoff,
             closed: closed.closed,
             contacts,
             epsilon,
+            volume: None,
+            steadiness: None,
             score: epsilon,
-        }))
+        };
+        Trial::Grasp(Box::new(Candidate { grasp, start }))
     }
 
-    /// The distinct grasps, best first, and what became of the rest; `trials` in the order of the approaches.
-    pub(super) fn collect(&self, trials: Vec<Trial>) -> (Vec<Grasp>, Counts) {
+    /// The distinct candidates, and what became of the rest; `trials` in the order of the approaches. The best of every range
+    /// of approach directions come in turn, so that the first of them have a grasp however the object lies and
+    /// whatever stands around it.
+    pub(super) fn candidates(&self, trials: Vec<Trial>) -> (Vec<Candidate>, Counts) {
         let mut counts = Counts { tried: trials.len(), ..Counts::default() };
-        let mut grasps = Vec::new();
+        let mut candidates = Vec::new();
         for trial in trials {
             match trial {
-                Trial::Grasp(grasp) => {
+                Trial::Grasp(candidate) => {
                     counts.closed += 1;
-                    grasps.push(*grasp);
+                    candidates.push(*candidate);
                 }
                 Trial::NoClosure => counts.no_closure += 1,
                 Trial::Miss(Miss::NoTouch) => counts.no_touch += 1,
@@ -138,68 +155,83 @@ impl<'a> Generator<'a> {
                 Trial::Miss(Miss::PalmTouches | Miss::Inside) => counts.palm += 1,
             }
         }
-        (spread(distinct(grasps), self.options.most_grasps), counts)
+        (in_turns(distinct(candidates)), counts)
     }
-}
 
-/// Contact patches of all fingers of a closed hand.
-pub(super) fn contacts_of(
-    hand: &Hand,
-    closed: &ClosedHand,
-    surface: &[SurfacePoint],
-    options: &PatchOptions,
-) -> Vec<PointContact> {
-    let mut contacts = Vec::new();
-    for (link, object_from_link) in hand.links.iter().zip(&closed.object_from_links) {
-        if link.is_finger {
-            contacts.extend(patch(link.parts, object_from_link, surface, options));
+    /// The grasp of a candidate with all its measures; `None` when it is fragile.
+    pub(super) fn judge(&self, candidate: &Candidate) -> Option<Grasp> {
+        let mut grasp = candidate.grasp.clone();
+        if !self.disturbances.is_empty() {
+            let steadiness = self.steadiness(&candidate.start)?;
+            grasp.score = grasp.epsilon * steadiness.held;
+            grasp.steadiness = Some(steadiness);
         }
+        grasp.volume = self.options.volumes.then(|| volume(&wrenches(&grasp.contacts, &self.contact)));
+        Some(grasp)
     }
-    contacts
+
+    /// Grasps the disturbed object again and again, the hand starting from where it did; `None` when the grasp is fragile.
+    fn steadiness(&self, start: &Start) -> Option<Steadiness> {
+        let mut regrasps = Vec::with_capacity(self.disturbances.len());
+        let mut held = 0;
+        for object_from_disturbed in &self.disturbances {
+            let disturbed_from_tool = object_from_disturbed.inverse() * start.object_from_tool;
+            let start = Start { object_from_tool: disturbed_from_tool, ..*start };
+            let Ok(closed) = close_on(self.hand, self.object, &start) else { continue };
+            held += usize::from(closes(&wrenches(&self.contacts_of(&closed), &self.contact)));
+            let tool = Point3::from((object_from_disturbed * closed.object_from_tool).translation.vector);
+            regrasps.push(Regrasp { tool, closed: closed.closed });
+        }
+        let deviation = deviation(self.hand, &regrasps);
+        let SteadinessOptions { disturbance, slip, .. } = self.options.steadiness;
+        let enough = 2 * regrasps.len() > self.disturbances.len();
+        let held = held as f64 / self.disturbances.len() as f64;
+        (enough && slip * deviation <= disturbance).then_some(Steadiness { deviation, held })
+    }
+
+    /// Contact patches of all fingers of a closed hand.
+    fn contacts_of(&self, closed: &ClosedHand) -> Vec<Contact> {
+        let mut contacts = Vec::new();
+        for (link, object_from_link) in self.hand.links.iter().zip(&closed.object_from_links) {
+            if link.is_finger {
+                contacts.extend(patch(link.parts, object_from_link, &self.surface, &self.options.patch));
+            }
+        }
+        contacts
+    }
 }
 
-/// At most `count` grasps, best first: the best of every range of approach directions in turn, so that the set has a
-/// grasp however the object lies and whatever stands around it.
-fn spread(mut grasps: Vec<Grasp>, count: usize) -> Vec<Grasp> {
-    grasps.sort_by(|a, b| b.score.total_cmp(&a.score));
-    // Each grasp's place among those from its directions; ties keep the order of scores.
+/// The best candidate of every range of approach directions, then the second best of every range, and so on.
+fn in_turns(mut candidates: Vec<Candidate>) -> Vec<Candidate> {
+    candidates.sort_by(|a, b| b.grasp.score.total_cmp(&a.grasp.score));
+    // Each one's place among those from its directions; ties keep the order of scores.
     let mut seen = [0usize; DIRECTIONS];
-    let mut turns: Vec<(usize, Grasp)> = Vec::with_capacity(grasps.len());
-    for grasp in grasps {
-        let place = &mut seen[direction_range(&grasp.approach_in_object)];
-        turns.push((*place, grasp));
+    let mut turns: Vec<(usize, Candidate)> = Vec::with_capacity(candidates.len());
+    for candidate in candidates {
+        let place = &mut seen[direction_range(&candidate.grasp.approach_in_object)];
+        turns.push((*place, candidate));
         *place += 1;
     }
     turns.sort_by_key(|(place, _)| *place);
-    turns.truncate(count);
-    let mut kept: Vec<Grasp> = turns.into_iter().map(|(_, grasp)| grasp).collect();
-    kept.sort_by(|a, b| b.score.total_cmp(&a.score));
-    kept
-}
-
-/// Number of ranges of directions: three dominant axes and the signs of all coordinates.
-const DIRECTIONS: usize = 24;
-
-fn direction_range(direction: &nalgebra::Unit<nalgebra::Vector3<f64>>) -> usize {
-    let sign = |axis: usize| usize::from(direction[axis] < 0.0) << axis;
-    direction.iamax() * 8 + sign(0) + sign(1) + sign(2)
+    turns.into_iter().map(|(_, candidate)| candidate).collect()
 }
 
 /// Poses closer than this are the same grasp: metres, and sine of the half angle.
 const SAME_GRASP: f64 = 2e-3;
 
 /// Drops grasps that repeat an earlier one, as rays beside each other often give after centring.
-fn distinct(grasps: Vec<Grasp>) -> Vec<Grasp> {
-    let mut kept: Vec<Grasp> = Vec::with_capacity(grasps.len());
-    for grasp in grasps {
-        let same = |other: &Grasp| {
-            let between = other.object_from_tool.inverse() * grasp.object_from_tool;
-            other.preshape == grasp.preshape
-                && between.translation.vector.norm() < SAME_GRASP
-                && between.rotation.imag().norm() < SAME_GRASP
+fn distinct(candidates: Vec<Candidate>) -> Vec<Candidate> {
+    let mut kept: Vec<Candidate> = Vec::with_capacity(candidates.len());
+    for candidate in candidates {
+        let tool = candidate.grasp.object_from_tool;
+        let same = |other: &Candidate| {
+            let other_tool = other.grasp.object_from_tool;
+            other.grasp.preshape == candidate.grasp.preshape
+                && (other_tool.translation.vector - tool.translation.vector).norm() < SAME_GRASP
+                && (other_tool.rotation.inverse() * tool.rotation).imag().norm() < SAME_GRASP
         };
         if !kept.iter().any(same) {
-            kept.push(grasp);
+            kept.push(candidate);
         }
     }
     kept
@@ -260,6 +292,7 @@ mod tests {
                 directions: 1,
                 cone: 0.0,
                 standoffs: vec![0.005],
+                rays: vec![Vector3::zeros()],
                 preshapes: 1,
                 most: 100_000,
             },
@@ -268,11 +301,12 @@ mod tests {
             friction: 0.5,
             cone_edges: 8,
             least_epsilon: 1e-3,
-            most_grasps: 1000,
+            volumes: true,
+            steadiness: SteadinessOptions { disturbance: 0.005, repeats: 8, slip: 0.7 },
         }
     }
 
-    fn grasps_of(size: [f64; 3]) -> (Vec<Grasp>, Counts) {
+    fn with_generator<R>(size: [f64; 3], use_it: impl FnOnce(&Generator) -> R) -> R {
         let (kinematics, gripper, parts) = jaws();
         let hand =
             Hand::new(&kinematics, &gripper, |l| parts.iter().find(|(link, _)| *link == l).map(|(_, p)| p));
@@ -280,16 +314,18 @@ mod tests {
         let mesh = part.mesh();
         let object = ConvexParts::new(vec![part]);
         let options = options();
-        let generator =
-            Generator::new(&hand, &mesh, &object, Point3::origin(), &options, Seed::new(1)).unwrap();
-        generator.collect(generator.approaches.iter().map(|a| generator.attempt(a)).collect())
+        use_it(&Generator::new(&hand, &mesh, &object, Point3::origin(), &options, Seed::new(1)).unwrap())
+    }
+
+    fn candidates_of(generator: &Generator) -> (Vec<Candidate>, Counts) {
+        generator.candidates(generator.approaches.iter().map(|a| generator.attempt(a)).collect())
     }
 
     #[test]
     fn jaws_hold_a_box_across_its_narrow_side_centred() {
-        let (grasps, counts) = grasps_of([0.05, 0.12, 0.12]);
+        let (candidates, counts) = with_generator([0.05, 0.12, 0.12], candidates_of);
         assert!(counts.closed > 20, "{counts:?}");
-        for g in &grasps {
+        for Candidate { grasp: g, .. } in &candidates {
             // The jaws move along tool y, which must be the narrow side of the box, and both touch: 25 mm each.
             let jaw = g.object_from_tool.rotation * Vector3::y();
             assert!(jaw.x.abs() > 0.99, "{jaw}");
@@ -301,21 +337,37 @@ mod tests {
     }
 
     #[test]
-    fn a_small_set_keeps_all_directions_of_a_large_one() {
-        let (grasps, _) = grasps_of([0.05, 0.12, 0.12]);
-        let directions = |grasps: &[Grasp]| {
-            let ranges = grasps.iter().map(|g| direction_range(&g.approach_in_object));
+    fn a_wide_face_is_held_steadily() {
+        with_generator([0.05, 0.12, 0.12], |generator| {
+            let (candidates, _) = candidates_of(generator);
+            let kept: Vec<Grasp> = candidates.iter().filter_map(|c| generator.judge(c)).collect();
+            assert!(3 * kept.len() > 2 * candidates.len(), "{} of {}", kept.len(), candidates.len());
+            for grasp in &kept {
+                let steadiness = grasp.steadiness.unwrap();
+                // The hand follows the object, whose points move by up to 5 mm.
+                assert!(steadiness.deviation > 1e-4 && steadiness.deviation < 0.0072, "{steadiness:?}");
+                assert!(grasp.volume.unwrap() > 0.0 && grasp.score <= grasp.epsilon);
+            }
+            let held = kept.iter().map(|g| g.steadiness.unwrap().held).fold(0.0, f64::max);
+            assert!(held > 0.9, "{held}");
+        });
+    }
+
+    #[test]
+    fn the_first_candidates_have_all_directions() {
+        let (candidates, _) = with_generator([0.05, 0.12, 0.12], candidates_of);
+        let directions = |candidates: &[Candidate]| {
+            let ranges = candidates.iter().map(|c| direction_range(&c.grasp.approach_in_object));
             ranges.collect::<std::collections::BTreeSet<_>>()
         };
-        let all = directions(&grasps);
-        let few = spread(grasps, all.len());
-        assert!(all.len() >= 4 && few.len() == all.len());
-        assert_eq!(directions(&few), all);
+        let all = directions(&candidates);
+        assert!(all.len() >= 4);
+        assert_eq!(directions(&candidates[..all.len()]), all);
     }
 
     #[test]
     fn a_box_wider_than_the_jaws_cannot_be_held() {
-        let (grasps, counts) = grasps_of([0.1, 0.1, 0.1]);
-        assert!(grasps.is_empty() && counts.tried > 0, "{counts:?}");
+        let (candidates, counts) = with_generator([0.1, 0.1, 0.1], candidates_of);
+        assert!(candidates.is_empty() && counts.tried > 0, "{counts:?}");
     }
 }

@@ -1,49 +1,40 @@
 //! How a gripper can hold an object: force-closure grasps, best first.
 
 #[cfg(feature = "build")]
-mod closure;
-#[cfg(feature = "build")]
 mod contacts;
+mod coverage;
 #[cfg(feature = "build")]
 mod generate;
 #[cfg(feature = "build")]
-mod hand;
-#[cfg(feature = "build")]
-mod strategy;
-#[cfg(feature = "build")]
-mod surface;
+mod steadiness;
 
 use nalgebra::{Point3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 use robotc_core::Pose;
-use robotc_core::ids::LinkIdx;
-use robotc_core::model::Origin;
-use robotc_core::robot::Gripper;
-use robotc_planning::grasp::{Contact, Grasp};
+use robotc_planning::grasp::{Contact, Grasp, Steadiness};
 use serde::{Deserialize, Serialize};
 
 use crate::codec;
 use crate::graph::{Dep, PlanError, Planner};
 use crate::kind::{DecodeError, Kind, Portability};
 use crate::kinds::ConvexParts;
+use crate::kinds::grip::{GripperInputs, diagonal};
 use crate::parameters::round_step;
 use crate::project::{OfGripperAndObject, OfObject, OfShape, Project, Subject};
-use crate::projection::{Mechanism, Shapes};
+use crate::projection::Shapes;
 use crate::record::Parts;
 
 /// The kind; its artefact is a list of [`Grasp`]s, best first.
 ///
 /// Rays find points of the object's surface; the hand approaches each from several directions, with several turns,
-/// preshapes and standoffs, closes, and is kept when its contact patches resist every wrench (thesis section 4.2).
+/// preshapes and standoffs, closes, and is kept when its contact patches resist every wrench (thesis section 4.2) and it is
+/// repeatable (algorithm 4.1). The best of all directions of approach are kept, ranked by epsilon times the share of disturbed
+/// grasps that close as well.
 pub struct GraspSet;
 
 /// What a grasp set is computed from.
 #[cfg_attr(not(feature = "build"), expect(dead_code, reason = "artefacts that only generators load"))]
 pub struct Inputs {
-    hand: Mechanism,
-    gripper: Gripper,
-    /// `palm_from_tool` as written.
-    tool: Origin,
-    hand_parts: Vec<(LinkIdx, Dep<ConvexParts>)>,
+    gripper: GripperInputs,
     object: Shapes,
     object_parts: Dep<ConvexParts>,
     friction: f64,
@@ -66,6 +57,10 @@ crate::parameters! {
         least_standoff: f64 ["m"] in 0.0..=1.0 = auto "at most a fiftieth of the hand's size";
         /// Largest distance of standing back.
         most_standoff: f64 ["m"] in 0.0..=1.0 = auto "at most the hand's size";
+        /// Approach rays of the hand: along the tool's axis, then evenly round it.
+        rays: u32 [""] in 1..=16 = 1;
+        /// Distance of those beside the tool's axis from it.
+        ray_radius: f64 ["m"] in 0.0..=1.0 = auto "at most a tenth of the hand's size";
         /// Most approaches that are tried, drawn at random from all.
         approaches: u32 [""] in 1..=10000000 = 8000;
         /// Coulomb friction between finger and object.
@@ -80,6 +75,14 @@ crate::parameters! {
         patch_points: u32 [""] in 1..=64 = 6;
         /// Smallest epsilon of a grasp that is kept.
         least_epsilon: f64 [""] in 0.0..=1.0 = 0.01;
+        /// How far points of the object are displaced, at most, to test how repeatable a grasp is.
+        disturbance: f64 ["m"] in 0.0..=1.0 = auto "1 cm, at most a tenth of the object's diagonal";
+        /// Number of such disturbed grasps; 0 leaves the test out.
+        repeats: u32 [""] in 0..=10000 = 16;
+        /// A grasp is fragile when this much of the deviation of the hand exceeds the disturbance.
+        slip: f64 [""] in 0.0..=10.0 = 0.7;
+        /// Whether the volume of what a grasp resists is computed too; it takes longer than all else.
+        volumes: bool = false;
         /// Most grasps that are kept, best first.
         most_grasps: u32 [""] in 1..=100000 = 600;
     }
@@ -87,8 +90,8 @@ crate::parameters! {
 
 impl Kind for GraspSet {
     const NAME: &'static str = "grasp_set";
-    const FORMAT: u32 = 1;
-    const ALGORITHM: u32 = 4;
+    const FORMAT: u32 = 2;
+    const ALGORITHM: u32 = 5;
     const PORTABILITY: Portability = Portability::Portable;
     const DOC: &'static str =
         "The ways a gripper can hold an object: force-closure grasps with their contacts, best first.";
@@ -99,36 +102,18 @@ impl Kind for GraspSet {
     type Artefact = Vec<Grasp>;
 
     fn inputs(planner: &mut Planner<'_>, subject: &OfGripperAndObject) -> Result<Inputs, PlanError> {
-        let project = planner.project();
-        let robot = project.robot();
-        let task = project.task().expect("objects belong to a task");
-        let object = &task.objects[subject.object];
-        let (hand, gripper, links) = Mechanism::hand(&robot.model, &robot.grippers[subject.gripper])?;
-        let mut hand_parts = Vec::new();
-        for (i, &link) in links.iter().enumerate() {
-            if !robot.model.links()[link].collisions.is_empty() {
-                let index = robotc_core::ids::Idx::new(i);
-                hand_parts.push((index, planner.need::<ConvexParts>(&OfShape::Link(link))?));
-            }
-        }
+        let gripper = GripperInputs::plan(planner, subject.gripper)?;
         let object_parts = planner.need::<ConvexParts>(&OfShape::Object(subject.object))?;
+        let task = planner.project().task().expect("objects belong to a task");
+        let object = &task.objects[subject.object];
         let (object, friction) = (Shapes::of(&object.geometry), object.friction);
-        let tool = planner.project().tool(subject.gripper);
-        Ok(Inputs { hand, gripper, tool: *tool, hand_parts, object, object_parts, friction })
+        Ok(Inputs { gripper, object, object_parts, friction })
     }
 
     fn key_parts(inputs: &Inputs, parts: &mut Parts) {
         // Artefacts are added by the planner; friction is the default of a parameter, which is part of the key.
-        let Inputs { hand, gripper, tool, hand_parts: _, object, object_parts: _, friction: _ } = inputs;
-        hand.key_parts(parts);
-        let approach: [f64; 3] = gripper.approach_in_tool.into_inner().into();
-        parts.add("tool", "", &(*tool, approach));
-        let fingers: Vec<usize> = gripper.fingers.iter().map(|&l| robotc_core::ids::Idx::index(l)).collect();
-        let dofs: Vec<usize> = gripper.dofs.iter().map(|&d| robotc_core::ids::Idx::index(d)).collect();
-        parts.add("fingers", "", &(fingers, dofs, gripper.closing.clone()));
-        for preshape in &gripper.preshapes {
-            parts.add("preshape", &preshape.name, &preshape.values);
-        }
+        let Inputs { gripper, object, object_parts: _, friction: _ } = inputs;
+        gripper.key_parts(parts);
         object.key_parts("object", parts);
     }
 
@@ -138,14 +123,7 @@ impl Kind for GraspSet {
 
     fn defaults(inputs: &Inputs) -> GraspParameters {
         let size = diagonal(&inputs.object.surface().vertices);
-        let reach = inputs
-            .hand
-            .model()
-            .joints()
-            .iter()
-            .map(|joint| Vector3::from(joint.origin.xyz).norm())
-            .fold(0.0, f64::max)
-            .max(inputs.gripper.palm_from_tool.translation.vector.norm());
+        let reach = inputs.gripper.size();
         GraspParameters {
             spacing: round_step(size / 12.0),
             least_standoff: round_step(reach / 50.0),
@@ -153,6 +131,8 @@ impl Kind for GraspSet {
             friction: inputs.friction,
             cover_gap: round_step(size / 20.0),
             patch_depth: (size / 120.0).clamp(0.0005, 0.002),
+            ray_radius: round_step(reach / 10.0),
+            disturbance: round_step(size / 10.0).min(0.01),
             ..GraspParameters::constants()
         }
     }
@@ -167,15 +147,17 @@ impl Kind for GraspSet {
 
     fn summary(artefact: &Vec<Grasp>) -> String {
         match artefact.first() {
-            Some(best) => format!("{} grasps, best epsilon {:.3}", artefact.len(), best.epsilon),
+            Some(best) => {
+                let (count, sides) = (artefact.len(), coverage::coverage(artefact));
+                let of = coverage::DIRECTIONS;
+                format!(
+                    "{count} grasps from {sides} of {of} sides, the best with epsilon {:.3}",
+                    best.epsilon
+                )
+            }
             None => "no grasp".to_owned(),
         }
     }
-}
-
-/// Length of the diagonal of the box around the points.
-fn diagonal(points: &[Point3<f64>]) -> f64 {
-    robotc_core::geom::Aabb::of_points(points).map_or(0.0, |bounds| bounds.diagonal())
 }
 
 /// A grasp as stored: plain numbers, metres and radians.
@@ -189,6 +171,8 @@ struct Stored {
     closed: Vec<f64>,
     contacts: Vec<[f64; 6]>,
     epsilon: f64,
+    volume: Option<f64>,
+    steadiness: Option<[f64; 2]>,
     score: f64,
 }
 
@@ -207,6 +191,8 @@ impl Stored {
             closed: grasp.closed.clone(),
             contacts: grasp.contacts.iter().map(contact).collect(),
             epsilon: grasp.epsilon,
+            volume: grasp.volume,
+            steadiness: grasp.steadiness.map(|s| [s.deviation, s.held]),
             score: grasp.score,
         }
     }
@@ -225,7 +211,8 @@ impl Stored {
             return Err(DecodeError::new("a rotation is not of unit length"));
         }
         let numbers = [self.standoff, self.epsilon, self.score];
-        if !numbers.iter().chain(&self.closed).all(|x| x.is_finite()) {
+        let numbers = numbers.iter().chain(&self.closed).chain(&self.volume);
+        if !numbers.chain(self.steadiness.iter().flatten()).all(|x| x.is_finite()) {
             return Err(DecodeError::new("a number is not finite"));
         }
         Ok(Grasp {
@@ -236,6 +223,8 @@ impl Stored {
             closed: self.closed,
             contacts: contacts?,
             epsilon: self.epsilon,
+            volume: self.volume,
+            steadiness: self.steadiness.map(|[deviation, held]| Steadiness { deviation, held }),
             score: self.score,
         })
     }
@@ -261,23 +250,30 @@ fn direction(d: [f64; 3]) -> Result<Unit<Vector3<f64>>, DecodeError> {
 
 #[cfg(feature = "build")]
 mod build {
-    use std::sync::Arc;
-
     use robotc_core::geom::{self, MeshIndex};
-    use robotc_core::model::Kinematics;
+    use robotc_core::robot::Gripper;
+    use robotc_planning::grasp::{ContactModel, closes, tangents, wrenches};
 
-    use super::closure::{ContactModel, PointContact, epsilon, wrenches};
     use super::contacts::PatchOptions;
     use super::generate::{GenerateOptions, Generator};
-    use super::hand::Hand;
-    use super::surface::ApproachOptions;
+    use super::steadiness::SteadinessOptions;
     use super::*;
     use crate::kind::{Build, BuildError, Context};
+    use crate::kinds::grip::surface::ApproachOptions;
 
-    fn options(p: &GraspParameters, preshapes: usize) -> GenerateOptions {
+    /// Grasps that are judged before it is asked whether there are enough.
+    const JUDGED_AT_ONCE: usize = 256;
+
+    fn options(p: &GraspParameters, gripper: &Gripper) -> GenerateOptions {
         let steps = p.standoffs.max(2) - 1;
         let standoff =
             |k| p.least_standoff + (p.most_standoff - p.least_standoff) * f64::from(k) / f64::from(steps);
+        let (u, v) = tangents(&gripper.approach_in_tool);
+        let beside = |k: u32| {
+            let angle = std::f64::consts::TAU * f64::from(k) / f64::from(p.rays.max(2) - 1);
+            (u * libm::cos(angle) + v * libm::sin(angle)) * p.ray_radius
+        };
+        let rays = std::iter::once(Vector3::zeros()).chain((0..p.rays - 1).map(beside)).collect();
         GenerateOptions {
             approaches: ApproachOptions {
                 spacing: p.spacing,
@@ -285,7 +281,8 @@ mod build {
                 directions: p.directions as usize,
                 cone: p.cone,
                 standoffs: (0..p.standoffs).map(standoff).collect(),
-                preshapes,
+                rays,
+                preshapes: gripper.preshapes.len(),
                 most: p.approaches as usize,
             },
             patch: PatchOptions { depth: p.patch_depth, gap: p.cover_gap, points: p.patch_points as usize },
@@ -293,7 +290,12 @@ mod build {
             friction: p.friction,
             cone_edges: p.cone_edges as usize,
             least_epsilon: p.least_epsilon,
-            most_grasps: p.most_grasps as usize,
+            volumes: p.volumes,
+            steadiness: SteadinessOptions {
+                disturbance: p.disturbance,
+                repeats: p.repeats as usize,
+                slip: p.slip,
+            },
         }
     }
 
@@ -303,17 +305,25 @@ mod build {
             parameters: &GraspParameters,
             context: &Context<'_>,
         ) -> Result<Vec<Grasp>, BuildError> {
-            let kinematics = Kinematics::new(inputs.hand.model().clone());
-            let hand_parts = load_hand(inputs, context)?;
-            let hand = Hand::new(&kinematics, &inputs.gripper, |link| part_of(&hand_parts, link));
+            let shapes = inputs.gripper.load(context)?;
+            let hand = inputs.gripper.hand(&shapes);
             let object_parts = context.load(&inputs.object_parts)?;
-            let options = options(parameters, inputs.gripper.preshapes.len());
+            let options = options(parameters, hand.gripper());
             let mesh = inputs.object.surface();
             let centre = centre_of_volume(&object_parts);
             let generator = Generator::new(&hand, &mesh, &object_parts, centre, &options, context.seed())
                 .ok_or_else(|| BuildError::Impossible("the object has no surface".into()))?;
             let trials = context.map(&generator.approaches, |_, approach| generator.attempt(approach))?;
-            Ok(generator.collect(trials).0)
+            let (candidates, _) = generator.candidates(trials);
+            let mut grasps = Vec::new();
+            for some in candidates.chunks(JUDGED_AT_ONCE) {
+                if grasps.len() < parameters.most_grasps as usize {
+                    grasps.extend(context.map(some, |_, c| generator.judge(c))?.into_iter().flatten());
+                }
+            }
+            grasps.truncate(parameters.most_grasps as usize);
+            grasps.sort_by(|a, b| b.score.total_cmp(&a.score));
+            Ok(grasps)
         }
 
         fn check(
@@ -326,9 +336,8 @@ mod build {
             let mesh = inputs.object.surface();
             let index = MeshIndex::new(&mesh);
             let object_parts = context.load(&inputs.object_parts)?;
-            let kinematics = Kinematics::new(inputs.hand.model().clone());
-            let hand_parts = load_hand(inputs, context)?;
-            let hand = Hand::new(&kinematics, &inputs.gripper, |link| part_of(&hand_parts, link));
+            let shapes = inputs.gripper.load(context)?;
+            let hand = inputs.gripper.hand(&shapes);
             let centre = centre_of_volume(&object_parts);
             let model = ContactModel {
                 friction: parameters.friction,
@@ -337,24 +346,18 @@ mod build {
                 length: 1.0,
             };
             for (i, grasp) in artefact.iter().enumerate() {
-                if grasp.preshape >= inputs.gripper.preshapes.len()
-                    || grasp.closed.len() != inputs.gripper.dofs.len()
-                {
+                let gripper = hand.gripper();
+                if grasp.preshape >= gripper.preshapes.len() || grasp.closed.len() != gripper.dofs.len() {
                     return wrong(i, "does not belong to this gripper");
                 }
                 if grasp.contacts.iter().any(|c| index.nearest(&c.point_in_object, 1e-6).is_none()) {
                     return wrong(i, "has a contact off the surface");
                 }
-                let points: Vec<PointContact> = grasp
-                    .contacts
-                    .iter()
-                    .map(|c| PointContact { point: c.point_in_object, inward: c.normal_in_object })
-                    .collect();
                 // Force closure does not depend on the unit of torque.
-                if epsilon(&wrenches(&points, &model)).is_none_or(|e| e <= 0.0) {
+                if !closes(&wrenches(&grasp.contacts, &model)) {
                     return wrong(i, "does not close");
                 }
-                let object_from_palm = grasp.object_from_tool * inputs.gripper.palm_from_tool.inverse();
+                let object_from_palm = grasp.object_from_tool * gripper.palm_from_tool.inverse();
                 for (link, palm_from_link) in hand.links.iter().zip(hand.palm_from_links(&grasp.closed)) {
                     let pose = object_from_palm * palm_from_link;
                     let inside = |p: &Point3<f64>| object_parts.height(&(pose * p)) < -parameters.patch_depth;
@@ -365,17 +368,6 @@ mod build {
             }
             Ok(())
         }
-    }
-
-    fn load_hand(
-        inputs: &Inputs,
-        context: &Context<'_>,
-    ) -> Result<Vec<(LinkIdx, Arc<geom::ConvexParts>)>, BuildError> {
-        inputs.hand_parts.iter().map(|(link, dep)| Ok((*link, context.load(dep)?))).collect()
-    }
-
-    fn part_of(parts: &[(LinkIdx, Arc<geom::ConvexParts>)], link: LinkIdx) -> Option<&geom::ConvexParts> {
-        parts.iter().find(|(l, _)| *l == link).map(|(_, parts)| &**parts)
     }
 
     /// Centre of the volume of the parts: the centre of mass where the density is the same everywhere.

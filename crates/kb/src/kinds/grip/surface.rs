@@ -4,22 +4,22 @@ use nalgebra::{Point3, Unit, Vector3};
 use robotc_core::Seed;
 use robotc_core::geom::MeshIndex;
 use robotc_core::model::TriMesh;
+use robotc_planning::grasp::tangents;
 
-use super::closure::tangents;
 use super::strategy::Approach;
 
 /// A point of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct SurfacePoint {
+pub(crate) struct SurfacePoint {
     /// Object frame, metres.
-    pub(super) point: Point3<f64>,
+    pub(crate) point: Point3<f64>,
     /// Outward as the faces are wound; a surface that is not closed may have it the other way round.
-    pub(super) normal: Unit<Vector3<f64>>,
+    pub(crate) normal: Unit<Vector3<f64>>,
 }
 
 /// Points spread over all faces, about `spacing` metres apart: each face is cut into equal triangles no longer than
 /// that, one point in each. In face order.
-pub(super) fn sample(mesh: &TriMesh, spacing: f64) -> Vec<SurfacePoint> {
+pub(crate) fn sample(mesh: &TriMesh, spacing: f64) -> Vec<SurfacePoint> {
     let mut out = Vec::new();
     for face in 0..mesh.faces.len() {
         let Some(normal) = Unit::try_new(mesh.area_vector(face), 1e-14) else { continue };
@@ -53,30 +53,82 @@ fn thin(points: Vec<SurfacePoint>, spacing: f64) -> Vec<SurfacePoint> {
     points.into_iter().filter(|p| seen.insert(cell(p))).collect()
 }
 
-/// What approaches are tried.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct ApproachOptions {
-    /// Distance between the rays that find surface points, metres.
-    pub(super) spacing: f64,
-    /// Equal turns about the direction of approach.
-    pub(super) rolls: usize,
-    /// Directions for each surface point: against its normal, then evenly round a cone about that.
-    pub(super) directions: usize,
-    /// Half angle of that cone, radians.
-    pub(super) cone: f64,
-    /// Distances to stand back after the first touch, metres.
-    pub(super) standoffs: Vec<f64>,
-    /// Number of preshapes of the gripper.
-    pub(super) preshapes: usize,
-    /// Most approaches; more than that are thinned at random.
-    pub(super) most: usize,
+/// Surface points in cubes, so that those near a finger are found without looking at all.
+pub(crate) struct Surface {
+    points: Vec<SurfacePoint>,
+    /// Ball around the points of a cube, and where they are among `points`.
+    cubes: Vec<(Point3<f64>, f64, std::ops::Range<usize>)>,
 }
 
-/// Approaches, in the order: surface point, direction, roll, preshape, standoff.
+/// Edge of a cube, in distances of the points.
+const CUBE: f64 = 8.0;
+
+impl Surface {
+    /// Points of a mesh about `spacing` metres apart.
+    pub(crate) fn new(mesh: &TriMesh, spacing: f64) -> Self {
+        let mut points = sample(mesh, spacing);
+        let edge = CUBE * spacing;
+        let cell = |p: &SurfacePoint| {
+            let c = p.point.coords / edge;
+            (c.x.floor() as i64, c.y.floor() as i64, c.z.floor() as i64)
+        };
+        points.sort_by_key(cell);
+        let mut cubes = Vec::new();
+        let mut first = 0;
+        for i in 1..=points.len() {
+            if i == points.len() || cell(&points[i]) != cell(&points[first]) {
+                let inside = &points[first..i];
+                let centre =
+                    inside.iter().map(|p| p.point.coords).sum::<Vector3<f64>>() / inside.len() as f64;
+                let radius = inside.iter().map(|p| (p.point.coords - centre).norm()).fold(0.0, f64::max);
+                cubes.push((Point3::from(centre), radius, first..i));
+                first = i;
+            }
+        }
+        Self { points, cubes }
+    }
+
+    /// All points, cube by cube.
+    pub(crate) fn points(&self) -> &[SurfacePoint] {
+        &self.points
+    }
+
+    /// The points of all cubes whose ball (centre, radius) satisfies `near`.
+    pub(crate) fn of_cubes(
+        &self,
+        near: impl Fn(&Point3<f64>, f64) -> bool,
+    ) -> impl Iterator<Item = &SurfacePoint> {
+        let chosen = self.cubes.iter().filter(move |(centre, radius, _)| near(centre, *radius));
+        chosen.flat_map(|(_, _, range)| &self.points[range.clone()])
+    }
+}
+
+/// What approaches are tried.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ApproachOptions {
+    /// Distance between the rays that find surface points, metres.
+    pub(crate) spacing: f64,
+    /// Equal turns about the direction of approach.
+    pub(crate) rolls: usize,
+    /// Directions for each surface point: against its normal, then evenly round a cone about that.
+    pub(crate) directions: usize,
+    /// Half angle of that cone, radians.
+    pub(crate) cone: f64,
+    /// Distances to stand back after the first touch, metres.
+    pub(crate) standoffs: Vec<f64>,
+    /// Approach rays of the hand: where each starts beside the tool's origin, in the tool frame, metres.
+    pub(crate) rays: Vec<Vector3<f64>>,
+    /// Number of preshapes of the gripper.
+    pub(crate) preshapes: usize,
+    /// Most approaches; more than that are thinned at random.
+    pub(crate) most: usize,
+}
+
+/// Approaches, in the order: surface point, direction, roll, ray of the hand, preshape, standoff.
 ///
 /// Surface points are where rays from the six sides of the box around the object first meet it (thesis section 4.2).
 /// Hands come in against the normal there, and along a cone around that direction.
-pub(super) fn approaches(
+pub(crate) fn approaches(
     mesh: &TriMesh,
     index: &MeshIndex,
     options: &ApproachOptions,
@@ -87,15 +139,16 @@ pub(super) fn approaches(
         for direction_in_object in cone(&inward, options.directions, options.cone) {
             for roll in 0..options.rolls {
                 let roll = std::f64::consts::TAU * roll as f64 / options.rolls as f64;
-                for preshape in 0..options.preshapes {
-                    for &standoff in &options.standoffs {
-                        out.push(Approach {
+                for &ray_in_tool in &options.rays {
+                    for preshape in 0..options.preshapes {
+                        out.extend(options.standoffs.iter().map(|&standoff| Approach {
                             target_in_object,
                             direction_in_object,
                             roll,
+                            ray_in_tool,
                             preshape,
                             standoff,
-                        });
+                        }));
                     }
                 }
             }
@@ -178,6 +231,19 @@ mod tests {
     }
 
     #[test]
+    fn cubes_hold_every_point_once() {
+        let mesh = box_part(Vector3::new(0.1, 0.2, 0.3)).mesh();
+        let surface = Surface::new(&mesh, 0.01);
+        assert_eq!(surface.of_cubes(|_, _| true).count(), sample(&mesh, 0.01).len());
+        let place = Point3::new(0.05, 0.03, 0.1);
+        let near = |p: &&SurfacePoint| (p.point - place).norm() < 0.02;
+        let found =
+            surface.of_cubes(|centre, radius| (centre - place).norm() < radius + 0.02).filter(near).count();
+        assert_eq!(found, surface.points().iter().filter(near).count());
+        assert!(found > 5);
+    }
+
+    #[test]
     fn approaches_point_into_the_object() {
         let mesh = box_part(Vector3::new(0.1, 0.1, 0.1)).mesh();
         let options = ApproachOptions {
@@ -186,6 +252,7 @@ mod tests {
             directions: 5,
             cone: 0.3,
             standoffs: vec![0.0, 0.01],
+            rays: vec![Vector3::zeros()],
             preshapes: 1,
             most: 10_000,
         };

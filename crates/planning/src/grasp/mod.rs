@@ -2,8 +2,16 @@
 //!
 //! A grasp is given relative to the object, so a set stays valid wherever the object stands (thesis section 3.1).
 
+mod closure;
+mod hull;
+mod wrench;
+
 use nalgebra::{Point3, Unit, Vector3};
 use robotc_core::Pose;
+
+pub use closure::closes;
+pub use hull::{Epsilon, epsilon, volume};
+pub use wrench::{ContactModel, tangents, wrenches};
 
 /// A place where the closed gripper touches the object.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,8 +40,23 @@ pub struct Grasp {
     /// Radius of the largest ball of wrenches that unit contact forces resist, torques scaled by object size; positive
     /// for a force-closure grasp.
     pub epsilon: f64,
+    /// Volume of the hull of the wrenches that unit contact forces exert, torques scaled by object size; `None` when it was not
+    /// computed.
+    pub volume: Option<f64>,
+    /// How it stood disturbances of the object; `None` when that was not tested.
+    pub steadiness: Option<Steadiness>,
     /// What grasps are ranked by; larger is better.
     pub score: f64,
+}
+
+/// What becomes of a grasp when the object is not quite where it should be (thesis, algorithm 4.1).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steadiness {
+    /// Standard deviation of the hand over the disturbed grasps, metres: of its position, plus that of its farthest moved link
+    /// through the finger values. A grasp that slips deviates more than the object.
+    pub deviation: f64,
+    /// Share of the disturbed grasps that closed again.
+    pub held: f64,
 }
 
 impl Grasp {
@@ -77,6 +100,8 @@ mod tests {
             closed: vec![],
             contacts: vec![],
             epsilon: 0.1,
+            volume: None,
+            steadiness: None,
             score,
         }
     }

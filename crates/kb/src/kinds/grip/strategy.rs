@@ -1,0 +1,183 @@
+//! The grasp strategy: approach until the hand touches, stand back, close the fingers until they touch.
+//!
+//! Thesis section 4.2 (and 3.2 for its use in planning). Everything is kinematic: the object does not move, but a hand
+//! whose fingers share one drive is centred on the object, as parallel jaws do when the first jaw touches.
+
+use nalgebra::{Point3, Translation3, Unit, UnitQuaternion, Vector3};
+use robotc_core::Pose;
+use robotc_core::geom::{ConvexParts, any_within, separation};
+use robotc_planning::grasp::tangents;
+
+use super::advance::{close_drive, first_touch};
+use super::hand::Hand;
+
+/// Where and how a hand comes in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Approach {
+    /// A point of the object that the approach ray of the hand goes through, object frame.
+    pub(crate) target_in_object: Point3<f64>,
+    /// Direction of motion, object frame.
+    pub(crate) direction_in_object: Unit<Vector3<f64>>,
+    /// Turn of the tool about the direction, radians.
+    pub(crate) roll: f64,
+    /// Where the ray of the hand starts beside the tool's origin, in the tool frame.
+    pub(crate) ray_in_tool: Vector3<f64>,
+    /// Position in `Gripper::preshapes`.
+    pub(crate) preshape: usize,
+    /// How far to stand back from the first touch, metres.
+    pub(crate) standoff: f64,
+}
+
+/// A hand that is about to come in along its approach direction: any place on that line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Start {
+    pub(crate) object_from_tool: Pose,
+    pub(crate) preshape: usize,
+    pub(crate) standoff: f64,
+}
+
+/// A hand closed on the object.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ClosedHand {
+    /// Where the tool ended up.
+    pub(crate) object_from_tool: Pose,
+    /// Finger values.
+    pub(crate) closed: Vec<f64>,
+    /// `object_from_link` of each of [`Hand::links`].
+    pub(crate) object_from_links: Vec<Pose>,
+}
+
+/// Why an approach gave no closed hand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Miss {
+    /// The hand never came near the object.
+    NoTouch,
+    /// Fewer than two fingers touch when closed.
+    FewFingers,
+    /// Something other than a finger touches the closed hand's object.
+    PalmTouches,
+    /// A finger is inside of the object.
+    Inside,
+}
+
+/// A gap smaller than this is a touch, metres.
+pub(crate) const TOUCH: f64 = 3e-4;
+/// Rounds of closing and centring; the rest gap halves at least with each.
+const CENTRING_ROUNDS: usize = 12;
+
+impl Approach {
+    /// The tool with its ray on the line through the target point, the start of the ray at that point.
+    pub(crate) fn start(&self, approach_in_tool: &Unit<Vector3<f64>>) -> Start {
+        let align = UnitQuaternion::rotation_between(approach_in_tool, &self.direction_in_object)
+            .unwrap_or_else(|| {
+                UnitQuaternion::from_axis_angle(
+                    &Unit::new_unchecked(tangents(approach_in_tool).0),
+                    std::f64::consts::PI,
+                )
+            });
+        let turn = UnitQuaternion::from_axis_angle(&self.direction_in_object, self.roll) * align;
+        let origin = self.target_in_object - turn * self.ray_in_tool;
+        let object_from_tool = Pose::from_parts(Translation3::from(origin.coords), turn);
+        Start { object_from_tool, preshape: self.preshape, standoff: self.standoff }
+    }
+}
+
+/// Runs the strategy.
+pub(crate) fn close_on(hand: &Hand, object: &ConvexParts, start: &Start) -> Result<ClosedHand, Miss> {
+    let gripper = hand.gripper();
+    let open = &gripper.preshapes[start.preshape].values;
+    let object_from_palm = start.object_from_tool * gripper.palm_from_tool.inverse();
+    let object_from_links: Vec<Pose> =
+        hand.palm_from_links(open).iter().map(|palm_from_link| object_from_palm * palm_from_link).collect();
+    let direction = start.object_from_tool.rotation * gripper.approach_in_tool;
+    let travel = first_touch(hand, &object_from_links, &direction, object).ok_or(Miss::NoTouch)?;
+    let back = Translation3::from(direction.into_inner() * (travel - start.standoff));
+    close_fingers(hand, object, back * start.object_from_tool, open)
+}
+
+/// Closes each drive until a link that it moves touches; a drive whose fingers oppose each other is centred.
+fn close_fingers(hand: &Hand, object: &ConvexParts, tool: Pose, open: &[f64]) -> Result<ClosedHand, Miss> {
+    let gripper = hand.gripper();
+    let tool_from_palm = gripper.palm_from_tool.inverse();
+    let mut object_from_tool = tool;
+    let mut values = open.to_vec();
+    for finger in (0..values.len()).filter(|&f| gripper.closing[f] != 0.0) {
+        let rounds = if hand.opposes(finger) { CENTRING_ROUNDS } else { 1 };
+        for _ in 0..rounds {
+            let object_from_palm = object_from_tool * tool_from_palm;
+            close_drive(hand, object, &object_from_palm, &mut values, finger);
+            if !hand.opposes(finger) {
+                break;
+            }
+            match rest_gap(hand, object, &object_from_palm, &values, finger) {
+                Some((shift, rest)) if rest > TOUCH => {
+                    object_from_tool = Translation3::from(shift * (0.5 * rest)) * object_from_tool;
+                }
+                _ => break,
+            }
+        }
+    }
+    let object_from_palm = object_from_tool * tool_from_palm;
+    let object_from_links: Vec<Pose> = hand
+        .palm_from_links(&values)
+        .iter()
+        .map(|palm_from_link| object_from_palm * palm_from_link)
+        .collect();
+    let touches = |i: usize, gap: f64| {
+        any_within(object, &Pose::identity(), hand.links[i].parts, &object_from_links[i], gap)
+    };
+    let mut touching = 0;
+    for (i, link) in hand.links.iter().enumerate() {
+        if link.is_finger {
+            // Centring may have pushed a finger into what was behind it.
+            if touches(i, 0.0) {
+                return Err(Miss::Inside);
+            }
+            touching += usize::from(touches(i, 3.0 * TOUCH));
+        } else if touches(i, TOUCH) {
+            return Err(Miss::PalmTouches);
+        }
+    }
+    if touching < 2 {
+        return Err(Miss::FewFingers);
+    }
+    Ok(ClosedHand { object_from_tool, closed: values, object_from_links })
+}
+
+/// How far the finger that does not touch yet is away, and which way the hand must go to share that gap.
+fn rest_gap(
+    hand: &Hand,
+    object: &ConvexParts,
+    object_from_palm: &Pose,
+    values: &[f64],
+    finger: usize,
+) -> Option<(Vector3<f64>, f64)> {
+    let palm_from_links = hand.palm_from_links(values);
+    let mut nearest: Option<(Vector3<f64>, f64)> = None;
+    let mut farthest: f64 = 0.0;
+    for (i, closing_in_palm) in hand.closing_directions(finger) {
+        let free = link_gap(hand, *i, &(object_from_palm * palm_from_links[*i]), object);
+        if nearest.is_none_or(|(_, best)| free < best) {
+            nearest = Some((object_from_palm.rotation * -closing_in_palm, free));
+        }
+        farthest = farthest.max(free);
+    }
+    // The touching finger gives way: the hand moves against its closing direction.
+    nearest.map(|(away, free)| (away, farthest - free))
+}
+
+/// Distance between a link and the object to a thousandth of itself, metres; zero when they touch.
+fn link_gap(hand: &Hand, link: usize, object_from_link: &Pose, object: &ConvexParts) -> f64 {
+    let mut best = f64::INFINITY;
+    for part in hand.links[link].parts {
+        let (centre, radius) = part.bounding_sphere();
+        let centre_in_object = object_from_link * centre;
+        for other in object {
+            let (other_centre, other_radius) = other.bounding_sphere();
+            if (centre_in_object - other_centre).norm() - radius - other_radius < best {
+                best = best.min(separation(other, part, object_from_link, 1e-3).map_or(0.0, |s| s.gap));
+            }
+        }
+    }
+    best
+}
