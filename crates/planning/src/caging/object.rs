@@ -179,13 +179,10 @@ impl<C: EdgeChecker> ArticulatedTask for CagedObject<'_, C> {
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         let checker = &mut self.checkers[step * self.substeps];
         let free = |q: &Vec<f64>| checker.state(q).is_ok();
-        let candidates = found.into_iter().map(|(_, q)| q);
-        match self.arm.free_variables() {
-            [] => candidates.filter(free).take(self.options.branches).collect(),
-            // Over the whole range, all values count: neighbours at other steps are found among them.
-            _ if near.is_none() => candidates.filter(free).collect(),
-            _ => candidates.filter(free).take(self.options.branches).collect(),
-        }
+        // Over the whole range of a redundant arm all values count: neighbours at other steps are found among them.
+        let whole_range = near.is_none() && !self.arm.free_variables().is_empty();
+        let most = if whole_range { usize::MAX } else { self.options.branches };
+        found.into_iter().map(|(_, q)| q).filter(free).take(most).collect()
     }
 
     fn motion(&mut self, from: &CagedState, to: &CagedState) -> Result<(), Obstruction> {
