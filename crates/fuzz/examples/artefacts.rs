@@ -20,6 +20,8 @@ const COARSE: &[(&str, &str, ParameterValue)] = &[
     ("reachability", "free_samples", ParameterValue::Integer(1)),
     ("grasp_set", "spacing", ParameterValue::Number(0.03)),
     ("grasp_set", "most_grasps", ParameterValue::Integer(4)),
+    ("caging_set", "approaches", ParameterValue::Integer(400)),
+    ("caging_set", "most", ParameterValue::Integer(4)),
     ("self_collision_pairs", "samples", ParameterValue::Integer(100)),
     ("self_collision_pairs", "boxes", ParameterValue::Integer(100)),
 ];
@@ -27,7 +29,7 @@ const COARSE: &[(&str, &str, ParameterValue)] = &[
 fn main() -> anyhow::Result<()> {
     let out = PathBuf::from(std::env::args().nth(1).context("usage: artefacts FOLDER")?);
     std::fs::create_dir_all(&out)?;
-    let task = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/tasks/mug_to_shelf_ur5e.task.toml");
+    let task = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/tasks/mug_and_cabinet.task.toml");
     let mut sources = Sources::new();
     let (spec, found) = load_task(&OsSystem, &mut sources, &task, &kinds::parameter_table());
     let mut spec = spec.with_context(|| found.to_plain_text(&sources))?;
