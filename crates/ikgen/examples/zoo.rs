@@ -1,8 +1,8 @@
 //! Compiles every arm of a folder with an `INDEX.tsv`, proves it, and prints a table in Markdown: what was solved of each set,
 //! then class and time of each arm, or the reason why it is refused. `cargo xtask ik-zoo` stores it.
 //!
-//! `cargo run --release -p robotc-ikgen --example zoo -- FOLDER [POSES] [FILTER] [--detail]`: only arms whose name contains FILTER;
-//! details are all sets, the search and the program.
+//! `cargo run --release -p robotc-ikgen --example zoo -- FOLDER [POSES] [FILTER] [--detail] [--no-snap]`: only arms whose name contains
+//! FILTER; details are all sets, the search and the program; without snapping arms are solved as they are described.
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
@@ -43,7 +43,7 @@ fn main() {
             let chain = chain(&folder.join(field[0]), field[4], field[5]);
             let chain =
                 chain.unwrap_or_else(|| panic!("{name} has a chain from {} to {}", field[4], field[5]));
-            arms.push((name.into(), arm(&chain, poses, !options.is_empty())));
+            arms.push((name.into(), arm(&chain, poses, &options)));
         }
     }
     summary(&arms, poses);
@@ -58,10 +58,12 @@ fn chain(path: &Path, base: &str, tip: &str) -> Option<SerialChain> {
     SerialChain::between(&kinematics, link(base)?, link(tip)?).ok()
 }
 
-fn arm(chain: &SerialChain, poses: usize, detail: bool) -> Report {
+fn arm(chain: &SerialChain, poses: usize, options: &[String]) -> Report {
+    let set = |name: &str| options.iter().any(|o| o == name);
+    let tolerance = if set("--no-snap") { 0.0 } else { Options::default().tolerance };
     let clock = Instant::now();
     let now = || clock.elapsed().as_secs_f64();
-    let result = compile(chain, &Options::default());
+    let result = compile(chain, &Options { tolerance, ..Options::default() });
     let seconds = now();
     let (report, trace, program) = match &result {
         Err(refusal) => (Report::refused(refusal, seconds), &refusal.trace, String::new()),
@@ -70,7 +72,7 @@ fn arm(chain: &SerialChain, poses: usize, detail: bool) -> Report {
             (report, &compiled.trace, compiled.text())
         }
     };
-    if detail {
+    if set("--detail") {
         report.sets.iter().for_each(|set| println!("{set:?}"));
         trace.iter().for_each(|line| println!("{line}"));
         println!("{program}");

@@ -277,7 +277,7 @@ fn one_by_one(
         Ok(how) => how,
         Err(reason) => {
             trace.push(format!("{line}{reason}"));
-            return Err(None);
+            return Err(Some(format!("{letters}: {reason}")));
         }
     };
     let class = describe(letters, "one by one", false, &how, free, chain);

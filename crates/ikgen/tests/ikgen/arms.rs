@@ -207,6 +207,22 @@ pub(crate) fn xarm6() -> SerialChain {
     )
 }
 
+/// Six joints without a triple, of which each two neighbours are parallel or meet: solutions come in pairs (FANUC CRX-10iA/L).
+pub(crate) fn crx10() -> SerialChain {
+    chain(
+        "crx10",
+        &[
+            (Z, [0.0, 0.0, 0.245]),
+            (Y, [0.0, 0.0, 0.245]),
+            ([0.0, -1.0, 0.0], [0.0, 0.0, 0.955]),
+            ([-1.0, 0.0, 0.0], [0.0, 0.0, 0.955]),
+            ([0.0, -1.0, 0.0], [0.54, 0.0, 0.955]),
+            ([-1.0, 0.0, 0.0], [0.54, -0.15, 0.955]),
+        ],
+        [0.7, -0.15, 0.955],
+    )
+}
+
 /// Makes joints slide along their axes.
 pub(crate) fn sliding(mut chain: SerialChain, joints: &[usize]) -> SerialChain {
     for i in joints {

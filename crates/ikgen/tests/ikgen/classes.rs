@@ -47,11 +47,25 @@ fn chains_without_a_triple_are_solved_in_general() {
 }
 
 #[test]
+fn pairs_of_solutions_are_found_everywhere_on_the_grid_of_right_angles() {
+    let compiled = compile(&arms::crx10(), &Options::default()).unwrap();
+    assert_eq!(compiled.class, "6R general, eliminated to degree 8");
+    let solver = compiled.solver();
+    for set in poses::sets(compiled.chain(), &[], 4096, Seed::new(1)) {
+        if set.name == "grid90" || set.name == "random" {
+            let report = robotc_ikgen::report::prove_set(compiled.chain(), &solver, &set, &|| 0.0);
+            assert_eq!((report.solved, report.wrong), (4096, 0), "{report:?}");
+            assert!(!set.regular || report.recovered == 4096, "{report:?}");
+        }
+    }
+}
+
+#[test]
 fn chains_that_no_strategy_fits_are_refused_with_a_reason() {
     let mut chain = arms::ur5();
     chain.joints[3].motion = robotc_core::model::ChainMotion::Prismatic;
     let refusal = compile(&chain, &Options::default()).unwrap_err();
-    assert!(refusal.reason.starts_with("RRRPRR"), "{refusal}");
+    assert!(refusal.reason.starts_with("RRRPRR: no equation holds only one of the joints"), "{refusal}");
     assert!(!refusal.trace.is_empty());
 }
 
