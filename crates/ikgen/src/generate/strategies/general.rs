@@ -89,7 +89,9 @@ fn orders(problem: &Problem) -> Vec<Order> {
             }
             let errors: Vec<f64> = trials.iter().map(|t| error(t, order)).collect();
             let missed = errors.iter().filter(|e| **e >= 1e-6 || e.is_nan()).count();
-            let exactness: f64 = errors.iter().map(|e| libm::log10(e.clamp(1e-15, 1.0))).sum();
+            // In whole decades, so that rounding does not choose.
+            let decades: f64 = errors.iter().map(|e| libm::log10(e.clamp(1e-15, 1.0))).sum();
+            let exactness = libm::round(decades / POSES as f64);
             if missed * 2 < POSES {
                 let degree = if squared { degree / 2 } else { degree };
                 ranked.push((missed, degree, exactness, order));
