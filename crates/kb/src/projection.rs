@@ -72,6 +72,32 @@ impl Mechanism {
         Self::of(model, &links, limits)
     }
 
+    /// The links from `base` to `tip` and all that are rigid with one of them: an arm with what it carries, but without what
+    /// moves on joints of its own, such as fingers. Comes with the indices that `base` and `tip` have there, and with the
+    /// links of `model`, in the order in which they are there.
+    pub fn arm(
+        model: &RobotModel,
+        base: LinkIdx,
+        tip: LinkIdx,
+        limits: Limits,
+    ) -> Result<(Self, [LinkIdx; 2], Vec<LinkIdx>), ChainError> {
+        let name = |link: LinkIdx| model.links()[link].name.clone();
+        let joints = model
+            .joints_between(base, tip)
+            .ok_or_else(|| ChainError::NotBelow { base: name(base), tip: name(tip) })?;
+        let mut links = model.rigid_group(base);
+        for joint in joints {
+            links.extend(model.rigid_group(model.joints()[joint].child));
+        }
+        links.sort();
+        links.dedup();
+        let place = |wanted: LinkIdx| {
+            let position = links.iter().position(|&l| l == wanted);
+            LinkIdx::new(position.expect("a link is rigid with itself"))
+        };
+        Ok((Self::of(model, &links, limits)?, [place(base), place(tip)], links))
+    }
+
     /// The links of a gripper: those rigid with its palm, and all below it. The gripper comes back with the indices that
     /// its links and degrees of freedom have there.
     pub fn hand(model: &RobotModel, gripper: &Gripper) -> Result<(Self, Gripper, Vec<LinkIdx>), ChainError> {

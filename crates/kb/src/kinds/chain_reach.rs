@@ -1,6 +1,8 @@
 //! How far the tip of an arm can get: a sphere that holds every position it can have.
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
+use robotc_core::Pose;
+use robotc_core::model::{ChainMotion, SerialChain};
 
 use crate::codec;
 use crate::graph::{PlanError, Planner};
@@ -72,18 +74,82 @@ impl Kind for ChainReach {
     }
 }
 
+/// Passes over the points; each makes the sum smaller, and any number of them gives a sphere that holds.
+const SWEEPS: usize = 64;
+
+/// The sphere of a chain, in the frame of its base; `None` when a sliding joint has no limits.
+pub(super) fn sphere(chain: &SerialChain) -> Option<ReachSphere> {
+    let mut axes = Vec::new();
+    let mut slides = 0.0;
+    let mut base_from_joint = Pose::identity();
+    for joint in &chain.joints {
+        base_from_joint *= joint.previous_from_joint;
+        axes.push(Line {
+            anchor: Point3::from(base_from_joint.translation.vector),
+            direction: base_from_joint.rotation * joint.axis.into_inner(),
+        });
+        if joint.motion == ChainMotion::Prismatic {
+            let variable = &chain.variables[joint.variable];
+            let ends = [variable.lower, variable.upper].map(|x| joint.multiplier * x + joint.offset);
+            let farthest = ends[0].abs().max(ends[1].abs());
+            if !farthest.is_finite() {
+                return None;
+            }
+            slides += farthest;
+        }
+    }
+    let tip = base_from_joint * chain.last_from_tip * Point3::origin();
+    let points = shortest_path(&axes, tip);
+    let radius = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>() + slides;
+    Some(ReachSphere { centre_in_base: points[0], radius })
+}
+
+/// A line through `anchor` along the unit vector `direction`.
+struct Line {
+    anchor: Point3<f64>,
+    direction: Vector3<f64>,
+}
+
+impl Line {
+    fn at(&self, t: f64) -> Point3<f64> {
+        self.anchor + self.direction * t
+    }
+
+    /// Where on the line the foot of `point` lies, and how far `point` is from it.
+    fn foot(&self, point: &Point3<f64>) -> (f64, f64) {
+        let t = (point - self.anchor).dot(&self.direction);
+        (t, (point - self.at(t)).norm())
+    }
+}
+
+/// A point on each line and then `tip`, so that the path through them is as short as some sweeps make it.
+fn shortest_path(lines: &[Line], tip: Point3<f64>) -> Vec<Point3<f64>> {
+    let mut points: Vec<Point3<f64>> = lines.iter().map(|line| line.anchor).chain([tip]).collect();
+    for _ in 0..SWEEPS {
+        for (i, line) in lines.iter().enumerate() {
+            let (t_next, d_next) = line.foot(&points[i + 1]);
+            let t = match i {
+                0 => t_next,
+                _ => {
+                    // As light finds its way: the path from the last point to the next, unfolded about the line.
+                    let (t_last, d_last) = line.foot(&points[i - 1]);
+                    let sum = d_last + d_next;
+                    if sum > 0.0 { (t_last * d_next + t_next * d_last) / sum } else { t_next }
+                }
+            };
+            points[i] = line.at(t);
+        }
+    }
+    points
+}
+
 #[cfg(feature = "build")]
 mod build {
-    use nalgebra::Vector3;
-    use robotc_core::ids::LinkIdx;
-    use robotc_core::model::{ChainMotion, Configuration, Kinematics, SerialChain};
-    use robotc_core::{Pose, ids::Idx};
+    use robotc_core::ids::{Idx, LinkIdx};
+    use robotc_core::model::{Configuration, Kinematics};
 
     use super::*;
     use crate::kind::{Build, BuildError, Context};
-
-    /// Passes over the points; each makes the sum smaller, and any number of them gives a sphere that holds.
-    const SWEEPS: usize = 64;
 
     impl Build for ChainReach {
         fn build(
@@ -91,32 +157,8 @@ mod build {
             _parameters: &NoParameters,
             _context: &Context<'_>,
         ) -> Result<ReachSphere, BuildError> {
-            let chain = chain(inputs)?;
-            let mut axes = Vec::new();
-            let mut slides = 0.0;
-            let mut base_from_joint = Pose::identity();
-            for joint in &chain.joints {
-                base_from_joint *= joint.previous_from_joint;
-                axes.push(Line {
-                    anchor: Point3::from(base_from_joint.translation.vector),
-                    direction: base_from_joint.rotation * joint.axis.into_inner(),
-                });
-                if joint.motion == ChainMotion::Prismatic {
-                    let variable = &chain.variables[joint.variable];
-                    let ends = [variable.lower, variable.upper].map(|x| joint.multiplier * x + joint.offset);
-                    let farthest = ends[0].abs().max(ends[1].abs());
-                    if !farthest.is_finite() {
-                        return Err(BuildError::Impossible(
-                            "a sliding joint of the arm has no limits".into(),
-                        ));
-                    }
-                    slides += farthest;
-                }
-            }
-            let tip = base_from_joint * chain.last_from_tip * Point3::origin();
-            let points = shortest_path(&axes, tip);
-            let radius = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>() + slides;
-            Ok(ReachSphere { centre_in_base: points[0], radius })
+            sphere(&chain(inputs)?)
+                .ok_or_else(|| BuildError::Impossible("a sliding joint of the arm has no limits".into()))
         }
 
         fn check(
@@ -147,48 +189,9 @@ mod build {
         }
     }
 
-    /// A line through `anchor` along the unit vector `direction`.
-    struct Line {
-        anchor: Point3<f64>,
-        direction: Vector3<f64>,
-    }
-
-    impl Line {
-        fn at(&self, t: f64) -> Point3<f64> {
-            self.anchor + self.direction * t
-        }
-
-        /// Where on the line the foot of `point` lies, and how far `point` is from it.
-        fn foot(&self, point: &Point3<f64>) -> (f64, f64) {
-            let t = (point - self.anchor).dot(&self.direction);
-            (t, (point - self.at(t)).norm())
-        }
-    }
-
     fn chain(inputs: &Mechanism) -> Result<SerialChain, BuildError> {
         let kinematics = Kinematics::new(inputs.model().clone());
         SerialChain::between(&kinematics, LinkIdx::new(0), inputs.tip())
             .map_err(|error| BuildError::Impossible(error.to_string()))
-    }
-
-    /// A point on each line and then `tip`, so that the path through them is as short as some sweeps make it.
-    fn shortest_path(lines: &[Line], tip: Point3<f64>) -> Vec<Point3<f64>> {
-        let mut points: Vec<Point3<f64>> = lines.iter().map(|line| line.anchor).chain([tip]).collect();
-        for _ in 0..SWEEPS {
-            for (i, line) in lines.iter().enumerate() {
-                let (t_next, d_next) = line.foot(&points[i + 1]);
-                let t = match i {
-                    0 => t_next,
-                    _ => {
-                        // As light finds its way: the path from the last point to the next, unfolded about the line.
-                        let (t_last, d_last) = line.foot(&points[i - 1]);
-                        let sum = d_last + d_next;
-                        if sum > 0.0 { (t_last * d_next + t_next * d_last) / sum } else { t_next }
-                    }
-                };
-                points[i] = line.at(t);
-            }
-        }
-        points
     }
 }

@@ -1,5 +1,6 @@
 //! The artefact kinds: one file each, one line each in [`ALL`].
 
+mod arm_pairs;
 mod caging_set;
 mod chain_reach;
 mod convex_parts;
@@ -7,9 +8,10 @@ mod grasp_set;
 mod grip;
 mod ik_solver;
 mod link_statistics;
-mod reachability;
+pub mod reachability;
 mod self_collision_pairs;
 
+pub use arm_pairs::{ArmPairs, LinkPairs};
 pub use caging_set::{Cage, CageHold, CagingParameters, CagingSet};
 pub use chain_reach::{ChainReach, ReachSphere};
 pub use convex_parts::{ConvexParts, ConvexPartsParameters};
@@ -30,6 +32,7 @@ pub const ALL: &[&dyn AnyKind] = &[
     &Entry::<IkSolver>::new(),
     &Entry::<LinkStatistics>::new(),
     &Entry::<SelfCollisionPairs>::new(),
+    &Entry::<ArmPairs>::new(),
     &Entry::<Reachability>::new(),
     &Entry::<GraspSet>::new(),
     &Entry::<CagingSet>::new(),

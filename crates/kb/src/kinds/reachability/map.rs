@@ -1,207 +1,221 @@
-//! The reachability map of an arm: for cells of tip poses, how much of the arm's freedom reaches their centre.
-//!
-//! An arm whose first joint turns sees the world alike in all directions about that axis, so cells are (distance from
-//! the axis, height along it, rotation seen from the azimuth): 72 times fewer than in the full space (thesis section
-//! 4.3 and algorithm 4.3 for the sampling; `core::so3` for the rotations).
+//! What is known of the cells of a reachability map, and the questions it answers by itself.
 
-use nalgebra::{Translation3, UnitQuaternion, Vector3};
 use robotc_core::Pose;
-use robotc_core::model::{ChainMotion, SerialChain};
-use robotc_core::so3::RotationGrid;
 use robotc_planning::Reachability;
+use serde::{Deserialize, Serialize};
 
-/// Where the cells lie.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Grid {
-    /// `base_from_axis`: z along the first joint's axis, origin in its joint frame.
-    pub base_from_axis: Pose,
-    /// Edge of a cell, metres.
-    pub step: f64,
-    /// Number of cells outwards from the axis.
-    pub radial: usize,
-    /// Number of cells along the axis.
-    pub vertical: usize,
-    /// Height of the lowest cell's lower side, metres along the axis.
-    pub lowest: f64,
-    /// Level of the rotation grid.
-    pub level: u32,
+use super::azimuth::Sectors;
+use super::grid::{Grid, Seen};
+
+/// What a map says of a pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Not reached: no probe of the cell is, nor any of the random configurations that were tried.
+    No,
+    /// Reached: every probe of the cell is.
+    Yes,
+    /// Part of the cell is reached. Exact inverse kinematics tells.
+    Mixed,
 }
 
-/// A pose seen from the first axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seen {
-    /// The cell.
-    pub cell: usize,
-    /// Azimuth of the tip about the axis, radians in (-pi, pi].
-    pub azimuth: f64,
+/// What is known of a cell.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cell {
+    /// Azimuths at which all probes of the cell are reached.
+    pub whole: Sectors,
+    /// Azimuths at which some pose of the cell may be reached. Holds `whole`.
+    pub part: Sectors,
+    /// How much of the arm's freedom reaches the centre: 0 (the centre is not reached) to [`FULL`] (every value of the free
+    /// joints that was tried).
+    pub density: u8,
 }
 
-impl Grid {
-    /// A grid that holds every pose that `chain` can reach; `None` when the first joint does not turn.
-    pub fn of(chain: &SerialChain, step: f64, level: u32) -> Option<Self> {
-        let first = chain.joints.first()?;
-        if first.motion != ChainMotion::Revolute || first.multiplier != 1.0 {
-            return None;
-        }
-        let align = UnitQuaternion::rotation_between(&Vector3::z_axis(), &first.axis)
-            .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
-        let base_from_axis = first.previous_from_joint * align;
-        let reach = reach(chain) + step;
-        let cells = (reach / step).ceil() as usize;
-        Some(Self {
-            base_from_axis,
-            step,
-            radial: cells,
-            vertical: 2 * cells,
-            lowest: -(cells as f64) * step,
-            level,
-        })
-    }
+/// Largest [`Cell::density`].
+pub const FULL: u8 = 15;
 
-    /// The rotation grid.
-    pub fn rotations(&self) -> RotationGrid {
-        RotationGrid::new(self.level)
-    }
-
-    /// Number of cells. Index = (radial * vertical cells + vertical) * rotations + rotation.
-    pub fn len(&self) -> usize {
-        self.radial * self.vertical * self.rotations().len()
-    }
-
-    /// A grid always has cells.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// `base_from_tip` at the centre of a cell, at azimuth zero.
-    pub fn centre(&self, cell: usize) -> Pose {
-        let rotations = self.rotations();
-        let (place, rotation) = (cell / rotations.len(), cell % rotations.len());
-        let r = ((place / self.vertical) as f64 + 0.5) * self.step;
-        let z = self.lowest + ((place % self.vertical) as f64 + 0.5) * self.step;
-        self.base_from_axis * Pose::from_parts(Translation3::new(r, 0.0, z), rotations.rotation(rotation))
-    }
-
-    /// The cell of a tip pose, or `None` outside of the grid.
-    pub fn see(&self, base_from_tip: &Pose) -> Option<Seen> {
-        let axis_from_tip = self.base_from_axis.inverse() * base_from_tip;
-        let p = axis_from_tip.translation.vector;
-        let azimuth = libm::atan2(p.y, p.x);
-        let radial = (libm::hypot(p.x, p.y) / self.step) as usize;
-        let vertical = ((p.z - self.lowest) / self.step).floor();
-        if radial >= self.radial || vertical < 0.0 || vertical >= self.vertical as f64 {
-            return None;
-        }
-        let turned = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -azimuth) * axis_from_tip.rotation;
-        let rotations = self.rotations();
-        let place = radial * self.vertical + vertical as usize;
-        Some(Seen { cell: place * rotations.len() + rotations.cell(&turned), azimuth })
-    }
-}
-
-/// A bound on the distance of the tip from the first joint's origin, metres: all link offsets stretched out, and all
-/// slides at their far end.
-pub(super) fn reach(chain: &SerialChain) -> f64 {
-    let offsets = chain.joints.iter().skip(1).map(|j| j.previous_from_joint.translation.vector.norm());
-    let slides = chain.joints.iter().filter(|j| j.motion == ChainMotion::Prismatic).map(|j| {
-        let v = &chain.variables[j.variable];
-        let ends = [v.lower, v.upper].map(|x| (j.multiplier * x + j.offset).abs());
-        ends[0].max(ends[1])
-    });
-    offsets.chain(slides).sum::<f64>() + chain.last_from_tip.translation.vector.norm()
-}
-
-/// What is known of the cells.
+/// The reachability of an arm.
+///
+/// Most cells are the same at all azimuths, and are told by two bits; those that differ have their azimuths in a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReachabilityMap {
-    /// Where they lie.
+    /// Where the cells lie.
     pub grid: Grid,
-    /// Number of values of the free joints that were tried for each cell (1 without free joints).
-    pub tries: u8,
-    /// For each cell, the number of tries that reach its centre within limits and without self-collision.
-    pub counts: Vec<u8>,
-    /// For each cell with a count, ascending: one of the joint vectors found, at azimuth zero; flattened.
-    pub witnesses: Vec<f32>,
-    /// Number of joint values of a witness.
-    pub variables: usize,
-    /// Smallest and largest value of the first joint.
-    pub first_limits: (f64, f64),
-    /// Position of the first witness of each block of [`BLOCK`] cells.
-    blocks: Vec<u32>,
+    /// Number of poses of a cell that were looked at before it was called reached as a whole.
+    pub probes: u8,
+    /// Two bits for each cell, 32 cells a word.
+    words: Vec<u64>,
+    /// For each word: how many cells before it are not `No`, and how many `Varies`.
+    ranks: Vec<[u32; 2]>,
+    /// For each cell that is not `No`, ascending: [`Cell::density`].
+    densities: Vec<u8>,
+    /// For each `Varies` cell, ascending: whole and part.
+    azimuths: Vec<[Sectors; 2]>,
 }
 
-/// Cells between stored witness positions.
-const BLOCK: usize = 64;
+/// The two bits of a cell.
+const NO: u64 = 0;
+const YES: u64 = 1;
+const MIXED: u64 = 2;
+const VARIES: u64 = 3;
 
-impl Reachability for ReachabilityMap {
-    /// Share of the tries that reach the centre of the pose's cell. Zero as well when the first joint cannot turn the
-    /// witness to the pose's azimuth. A reached centre does not prove the whole cell.
-    fn density(&self, base_from_tip: &Pose) -> f64 {
-        let Some(seen) = self.grid.see(base_from_tip) else { return 0.0 };
-        match self.witness_at(&seen) {
-            Some(_) => f64::from(self.counts[seen.cell]) / f64::from(self.tries),
-            None => 0.0,
-        }
-    }
-}
+/// The lower bit of every cell of a word.
+const LOWER: u64 = 0x5555_5555_5555_5555;
 
 impl ReachabilityMap {
-    /// A map of these cells; `None` when the lengths do not fit together.
-    pub fn new(
-        grid: Grid,
-        tries: u8,
-        counts: Vec<u8>,
-        witnesses: Vec<f32>,
-        variables: usize,
-        first_limits: (f64, f64),
-    ) -> Option<Self> {
-        let reached = counts.iter().filter(|c| **c > 0).count();
-        let fits = counts.len() == grid.len()
-            && witnesses.len() == reached.checked_mul(variables)?
-            && tries > 0
-            && variables > 0
-            && counts.iter().all(|&c| c <= tries);
-        if !fits {
-            return None;
+    /// A map of these cells; `None` when their number is not that of the grid.
+    pub fn new(grid: Grid, probes: u8, cells: impl Iterator<Item = Cell>) -> Option<Self> {
+        let count = grid.len();
+        let (mut words, mut densities, mut azimuths) = (vec![0; count.div_ceil(32)], Vec::new(), Vec::new());
+        let mut i = 0;
+        for cell in cells {
+            let bits = match (cell.whole, cell.part) {
+                (_, Sectors::NONE) => NO,
+                (Sectors::ALL, Sectors::ALL) => YES,
+                (Sectors::NONE, Sectors::ALL) => MIXED,
+                _ => VARIES,
+            };
+            if i == count {
+                return None;
+            }
+            words[i / 32] |= bits << (2 * (i % 32));
+            if bits != NO {
+                densities.push(cell.density.min(FULL));
+            }
+            if bits == VARIES {
+                azimuths.push([cell.whole.and(cell.part), cell.part]);
+            }
+            i += 1;
         }
-        let mut blocks = Vec::with_capacity(counts.len() / BLOCK + 1);
-        let mut before = 0;
-        for block in counts.chunks(BLOCK) {
-            blocks.push(before);
-            before += block.iter().filter(|c| **c > 0).count() as u32;
+        let mut ranks = Vec::with_capacity(words.len());
+        let mut before = [0; 2];
+        for word in &words {
+            ranks.push(before);
+            before[0] += some(*word).count_ones();
+            before[1] += varying(*word).count_ones();
         }
-        Some(Self { grid, tries, counts, witnesses, variables, first_limits, blocks })
+        (i == count).then_some(Self { grid, probes, words, ranks, densities, azimuths })
     }
 
-    /// The stored joint vector of a pose's cell, its first joint turned to the pose's azimuth; `None` when the cell is
-    /// not reached or the turn is outside of the limits. Reaches the centre of the cell, so it is near the pose.
-    pub fn witness(&self, base_from_tip: &Pose) -> Option<Vec<f64>> {
-        let seen = self.grid.see(base_from_tip)?;
-        self.witness_at(&seen)
-    }
-
-    fn witness_at(&self, seen: &Seen) -> Option<Vec<f64>> {
-        let mut joints = self.cell_witness(seen.cell)?;
-        let (low, high) = self.first_limits;
-        let turn = std::f64::consts::TAU;
-        let value = joints[0] + seen.azimuth;
-        joints[0] = [value, value - turn, value + turn].into_iter().find(|v| (low..=high).contains(v))?;
-        Some(joints)
-    }
-
-    /// The joint vector that reaches the centre of a cell at azimuth zero, its first joint not limited.
-    pub fn cell_witness(&self, cell: usize) -> Option<Vec<f64>> {
-        if *self.counts.get(cell)? == 0 {
-            return None;
+    /// What is known of a cell.
+    pub fn cell(&self, cell: usize) -> Cell {
+        let (word, shift) = (self.words[cell / 32], 2 * (cell % 32));
+        let below = (1_u64 << shift) - 1;
+        let [some_before, varying_before] = self.ranks[cell / 32];
+        let density = || self.densities[(some_before + (some(word) & below).count_ones()) as usize];
+        match word >> shift & 3 {
+            NO => Cell::default(),
+            YES => Cell { whole: Sectors::ALL, part: Sectors::ALL, density: density() },
+            MIXED => Cell { whole: Sectors::NONE, part: Sectors::ALL, density: density() },
+            _ => {
+                let varies = (varying_before + (varying(word) & below).count_ones()) as usize;
+                let [whole, part] = self.azimuths[varies];
+                Cell { whole, part, density: density() }
+            }
         }
-        let block = cell / BLOCK;
-        let inside = self.counts[block * BLOCK..cell].iter().filter(|c| **c > 0).count();
-        let at = (self.blocks[block] as usize + inside) * self.variables;
-        Some(self.witnesses[at..at + self.variables].iter().map(|&x| f64::from(x)).collect())
     }
 
-    /// Number of cells with a solution.
-    pub fn reached(&self) -> usize {
-        self.witnesses.len() / self.variables
+    /// All cells, ascending.
+    pub fn cells(&self) -> impl ExactSizeIterator<Item = Cell> + '_ {
+        (0..self.grid.len()).map(|cell| self.cell(cell))
+    }
+
+    /// Whether a tip pose is reached. Nothing is solved and nothing allocated.
+    pub fn verdict(&self, base_from_tip: &Pose) -> Verdict {
+        self.grid.see(base_from_tip).map_or(Verdict::No, |seen| self.verdict_at(&seen))
+    }
+
+    /// As [`verdict`](Self::verdict), of a pose seen from the axis.
+    pub fn verdict_at(&self, seen: &Seen) -> Verdict {
+        match self.words[seen.cell / 32] >> (2 * (seen.cell % 32)) & 3 {
+            NO => Verdict::No,
+            YES => Verdict::Yes,
+            MIXED => Verdict::Mixed,
+            _ => {
+                let (cell, sector) = (self.cell(seen.cell), seen.sector());
+                if cell.whole.contains(sector) {
+                    Verdict::Yes
+                } else if cell.part.contains(sector) {
+                    Verdict::Mixed
+                } else {
+                    Verdict::No
+                }
+            }
+        }
+    }
+
+    /// Number of cells of which something, everything, and a part that depends on the azimuth is reached.
+    pub fn counts(&self) -> [usize; 3] {
+        let yes = |word: &u64| (word & !(word >> 1) & LOWER).count_ones() as usize;
+        [self.densities.len(), self.words.iter().map(yes).sum(), self.azimuths.len()]
+    }
+}
+
+impl Reachability for ReachabilityMap {
+    /// How much of the arm's freedom reaches the centre of the pose's cell. A cell that is reached in parts and not at its
+    /// centre counts as little as one value of the free joints; a pose that is not reached counts nothing.
+    fn density(&self, base_from_tip: &Pose) -> f64 {
+        let Some(seen) = self.grid.see(base_from_tip) else { return 0.0 };
+        match self.verdict_at(&seen) {
+            Verdict::No => 0.0,
+            Verdict::Yes | Verdict::Mixed => weight(&self.cell(seen.cell)),
+        }
+    }
+}
+
+/// The weight of a cell of which something is reached: 0 to 1.
+pub(super) fn weight(cell: &Cell) -> f64 {
+    f64::from(cell.density.max(1)) / f64::from(FULL)
+}
+
+/// The lower bits of the cells that are not `No`.
+fn some(word: u64) -> u64 {
+    (word | word >> 1) & LOWER
+}
+
+/// The lower bits of the cells that are `Varies`.
+fn varying(word: u64) -> u64 {
+    word & word >> 1 & LOWER
+}
+
+#[cfg(test)]
+mod tests {
+    use robotc_core::Seed;
+
+    use super::*;
+
+    #[test]
+    fn cells_are_found_again() {
+        let grid = Grid { base_from_axis: Pose::identity(), step: 0.1, radial: 3, level: 0, symmetric: true };
+        let mut rng = Seed::new(3).rng();
+        let mut cells = Vec::new();
+        for _ in 0..grid.len() {
+            let part = Sectors(rng.bits() as u32);
+            let some = (part, part.and(Sectors(rng.bits() as u32)));
+            let (part, whole) = [
+                (Sectors::NONE, Sectors::NONE),
+                (Sectors::ALL, Sectors::ALL),
+                (Sectors::ALL, Sectors::NONE),
+                some,
+            ][rng.below(4)];
+            let density = if part.is_empty() { 0 } else { rng.below(16) as u8 };
+            cells.push(Cell { whole, part, density });
+        }
+        let map =
+            ReachabilityMap::new(grid.clone(), 1, cells.iter().copied()).expect("as many as in the grid");
+        assert!(map.cells().eq(cells.iter().copied()));
+        for (i, cell) in cells.iter().enumerate() {
+            for azimuth in [0.1, 2.0, 4.0] {
+                let pose = grid.turned(&grid.centre(i), azimuth);
+                let sector = Sectors::at(azimuth);
+                let expected = match (cell.whole.contains(sector), cell.part.contains(sector)) {
+                    (true, _) => Verdict::Yes,
+                    (false, true) => Verdict::Mixed,
+                    (false, false) => Verdict::No,
+                };
+                assert_eq!(map.verdict(&pose), expected);
+            }
+        }
+        assert!(ReachabilityMap::new(grid.clone(), 1, cells.iter().copied().skip(1)).is_none());
+        assert!(ReachabilityMap::new(grid, 1, cells.iter().chain(&cells[..1]).copied()).is_none());
     }
 }

@@ -1,30 +1,47 @@
 //! Which tip poses an arm reaches.
 
-mod map;
+mod arm;
+mod azimuth;
+mod density;
 #[cfg(feature = "build")]
-mod search;
+mod fill;
+mod grid;
+mod map;
+mod pack;
+mod placement;
+#[cfg(feature = "build")]
+mod probes;
+#[cfg(feature = "build")]
+mod turning;
 
-use map::Grid;
-pub use map::ReachabilityMap;
+pub use arm::{ArmAlone, Scratch};
+pub use azimuth::{SECTORS, Sectors};
+pub use density::KernelDensity;
+pub use grid::{Grid, Seen};
+pub use map::{Cell, FULL, ReachabilityMap, Verdict};
+pub use placement::{Placement, PlacementError, Placements, Target, Trust, verdicts};
 
+use robotc_core::Kinematics;
 use robotc_core::ids::{Idx, LinkIdx};
-use robotc_core::model::{ChainMotion, SerialChain};
-use robotc_core::{Kinematics, Pose};
-use serde::{Deserialize, Serialize};
+use robotc_core::model::SerialChain;
 
-use crate::codec;
 use crate::graph::{Dep, PlanError, Planner};
 use crate::kind::{DecodeError, Kind, Portability};
-use crate::kinds::{ConvexParts, IkSolver, SelfCollisionPairs};
+use crate::kinds::{ArmPairs, ChainReach, ConvexParts, IkSolver, chain_reach};
 use crate::parameters::round_step;
-use crate::project::{OfArm, OfRobot, OfShape, Project};
+use crate::project::{OfArm, OfShape};
 use crate::projection::{Limits, Mechanism};
 use crate::record::Parts;
 
 /// The kind; its artefact is a [`ReachabilityMap`].
 ///
-/// Exact inverse kinematics at the centre of every cell, within joint limits and free of self-collision (thesis section
-/// 4.3). Arms whose first joint slides have none.
+/// Cells of tip poses are reached as a whole, not at all, or in part (thesis, section 4.3, where one number is kept for each
+/// cell). What a cell is called rests on samples, not on a proof: on exact inverse kinematics at `probes` poses of it, and
+/// on `configurations` random configurations of the arm. If a share s of a cell is not reached, it is called reached as a
+/// whole with probability (1 - s)^probes.
+///
+/// Only the arm is read, in the sense of [`Mechanism::arm`]: its chain with limits, and the shapes of what is rigid with a
+/// link of it, hence also the palm of a hand, but no fingers, whose posture the map cannot know.
 pub struct Reachability;
 
 crate::parameters! {
@@ -36,6 +53,10 @@ crate::parameters! {
         level: u32 [""] in 0..=3 = 0;
         /// Values tried for each free joint of a redundant arm.
         free_samples: u32 [""] in 1..=64 = 8;
+        /// Poses of a cell that have to be reached before all of it counts as reached.
+        probes: u32 [""] in 1..=64 = 8;
+        /// Random configurations that find what probes miss.
+        configurations: u32 [""] in 0..=100000000 = 200000;
     }
 }
 
@@ -43,24 +64,26 @@ crate::parameters! {
 #[cfg_attr(not(feature = "build"), expect(dead_code, reason = "artefacts that only generators load"))]
 pub struct Inputs {
     mechanism: Mechanism,
-    base: LinkIdx,
-    tip: LinkIdx,
+    /// Base and tip of the chain.
+    ends: [LinkIdx; 2],
+    sphere: Dep<ChainReach>,
     solver: Dep<IkSolver>,
-    pairs: Dep<SelfCollisionPairs>,
+    pairs: Dep<ArmPairs>,
     bodies: Vec<(LinkIdx, Dep<ConvexParts>)>,
 }
 
 impl Inputs {
     fn chain(&self) -> SerialChain {
         let kinematics = Kinematics::new(self.mechanism.model().clone());
-        SerialChain::between(&kinematics, self.base, self.tip).expect("the solver was planned for this chain")
+        let [base, tip] = self.ends;
+        SerialChain::between(&kinematics, base, tip).expect("the solver was planned for this chain")
     }
 }
 
 impl Kind for Reachability {
     const NAME: &'static str = "reachability";
-    const FORMAT: u32 = 1;
-    const ALGORITHM: u32 = 1;
+    const FORMAT: u32 = 2;
+    const ALGORITHM: u32 = 2;
     const PORTABILITY: Portability = Portability::Portable;
     const IN_PIECES: bool = true;
     const DOC: &'static str = "Which poses of its tip an arm reaches, seen from its first axis. Grasps are ranked by it before anything is solved.";
@@ -70,129 +93,83 @@ impl Kind for Reachability {
     type Parameters = ReachabilityParameters;
     type Artefact = ReachabilityMap;
 
-    fn subjects(project: &Project) -> Vec<OfArm> {
-        let robot = project.robot();
-        let turns_first = |arm: &OfArm| {
-            let arm = &robot.arms[arm.0];
-            let kinematics = Kinematics::new(robot.model.clone());
-            SerialChain::between(&kinematics, arm.base, arm.tip)
-                .is_ok_and(|chain| chain.joints[0].motion == ChainMotion::Revolute)
-        };
-        <OfArm as crate::project::Subject>::all(project).into_iter().filter(turns_first).collect()
-    }
-
     fn inputs(planner: &mut Planner<'_>, subject: &OfArm) -> Result<Inputs, PlanError> {
         let robot = planner.project().robot();
         let arm = &robot.arms[subject.0];
+        let (mechanism, ends, links) = Mechanism::arm(&robot.model, arm.base, arm.tip, Limits::Kept)?;
+        let sphere = planner.need::<ChainReach>(subject)?;
         let solver = planner.need::<IkSolver>(subject)?;
-        let pairs = planner.need::<SelfCollisionPairs>(&OfRobot)?;
+        let pairs = planner.need::<ArmPairs>(subject)?;
         let mut bodies = Vec::new();
-        for shape in <OfShape as crate::project::Subject>::all(planner.project()) {
-            if let OfShape::Link(link) = shape {
-                bodies.push((link, planner.need::<ConvexParts>(&shape)?));
+        for (i, &link) in links.iter().enumerate() {
+            if !robot.model.links()[link].collisions.is_empty() {
+                bodies.push((LinkIdx::new(i), planner.need::<ConvexParts>(&OfShape::Link(link))?));
             }
         }
-        let mechanism = Mechanism::whole(&robot.model, Limits::Kept);
-        Ok(Inputs { mechanism, base: arm.base, tip: arm.tip, solver, pairs, bodies })
+        Ok(Inputs { mechanism, ends, sphere, solver, pairs, bodies })
     }
 
     fn key_parts(inputs: &Inputs, parts: &mut Parts) {
-        let Inputs { mechanism, base, tip, solver: _, pairs: _, bodies } = inputs;
+        let Inputs { mechanism, ends, sphere: _, solver: _, pairs: _, bodies } = inputs;
         mechanism.key_parts(parts);
-        parts.add("chain", "", &(base.index(), tip.index()));
+        parts.add("chain", "", &(ends[0].index(), ends[1].index()));
         let bodies: Vec<usize> = bodies.iter().map(|(link, _)| link.index()).collect();
         parts.add("links with shapes", "", &bodies);
     }
 
     fn defaults(inputs: &Inputs) -> ReachabilityParameters {
-        let step = round_step(map::reach(&inputs.chain()) / 15.0);
-        ReachabilityParameters { step, ..ReachabilityParameters::constants() }
+        // Without limits of its slides an arm has no map; the step is then of no matter.
+        let radius = chain_reach::sphere(&inputs.chain()).map_or(1.0, |sphere| sphere.radius);
+        ReachabilityParameters { step: round_step(radius / 15.0), ..ReachabilityParameters::constants() }
     }
 
     fn encode(map: &ReachabilityMap) -> Vec<u8> {
-        let pose = map.grid.base_from_axis;
-        codec::encode(&Stored {
-            position: pose.translation.vector.into(),
-            rotation: pose.rotation.coords.into(),
-            step: map.grid.step,
-            radial: map.grid.radial as u32,
-            vertical: map.grid.vertical as u32,
-            lowest: map.grid.lowest,
-            level: map.grid.level,
-            tries: map.tries,
-            counts: map.counts.clone(),
-            witnesses: map.witnesses.clone(),
-            variables: map.variables as u32,
-            first_limits: [map.first_limits.0, map.first_limits.1],
-        })
+        pack::encode(map)
     }
 
     fn decode(bytes: &[u8]) -> Result<ReachabilityMap, DecodeError> {
-        let s: Stored = codec::decode(bytes)?;
-        let numbers = s.position.iter().chain(&s.rotation).chain([&s.step, &s.lowest]);
-        if !numbers.clone().all(|x| x.is_finite())
-            || s.step <= 0.0
-            || s.first_limits.iter().any(|x| x.is_nan())
-            || s.witnesses.iter().any(|x| !x.is_finite())
-        {
-            return Err(DecodeError::new("a number is not finite"));
-        }
-        if s.level > 6 || s.radial > 1 << 16 || s.vertical > 1 << 16 {
-            return Err(DecodeError::new("the grid is too large"));
-        }
-        let rotation = nalgebra::UnitQuaternion::new_unchecked(nalgebra::Quaternion::from(s.rotation));
-        if (rotation.norm() - 1.0).abs() > 1e-9 {
-            return Err(DecodeError::new("a rotation is not of unit length"));
-        }
-        let grid = Grid {
-            base_from_axis: Pose::from_parts(nalgebra::Translation3::from(s.position), rotation),
-            step: s.step,
-            radial: s.radial as usize,
-            vertical: s.vertical as usize,
-            lowest: s.lowest,
-            level: s.level,
-        };
-        let limits = (s.first_limits[0], s.first_limits[1]);
-        ReachabilityMap::new(grid, s.tries, s.counts, s.witnesses, s.variables as usize, limits)
-            .ok_or_else(|| DecodeError::new("tables do not fit together"))
+        pack::decode(bytes)
     }
 
     fn summary(map: &ReachabilityMap) -> String {
-        let (reached, all) = (map.reached(), map.grid.len());
-        format!("{reached} of {all} cells of {:.0} mm reached", map.grid.step * 1e3)
+        let [some, yes, varies] = map.counts();
+        let share = |count: usize| 100.0 * count as f64 / map.grid.len() as f64;
+        format!(
+            "{} cells of {:.0} mm: {:.1} % reached as a whole, {:.1} % in part, of these {:.1} % by azimuth",
+            map.grid.len(),
+            map.grid.step * 1e3,
+            share(yes),
+            share(some - yes),
+            share(varies),
+        )
     }
-}
-
-#[derive(Serialize, Deserialize)]
-struct Stored {
-    position: [f64; 3],
-    rotation: [f64; 4],
-    step: f64,
-    radial: u32,
-    vertical: u32,
-    lowest: f64,
-    level: u32,
-    tries: u8,
-    counts: Vec<u8>,
-    witnesses: Vec<f32>,
-    variables: u32,
-    first_limits: [f64; 2],
 }
 
 #[cfg(feature = "build")]
 mod build {
     use std::sync::Arc;
 
-    use robotc_core::geom::{ConvexParts as Parts3, any_within};
-    use robotc_core::{Configuration, LinkPoses, TypedVec};
-    use robotc_ikgen::Solver;
+    use robotc_core::TypedVec;
+    use robotc_core::geom::ConvexParts as Parts3;
 
-    use super::search::{Search, SearchOptions, witness_is_true};
+    use super::fill::{Effort, fill};
+    use super::turning::Turning;
     use super::*;
     use crate::kind::{Build, BuildError, Context};
 
-    /// Witnesses looked at again by the check, evenly over all.
+    /// Cells looked at again by the check, evenly over all.
     const CHECKED: usize = 2000;
+
+    fn arm(inputs: &Inputs, context: &Context<'_>) -> Result<ArmAlone, BuildError> {
+        let model = inputs.mechanism.model();
+        let mut links: TypedVec<LinkIdx, Arc<Parts3>> =
+            model.links().iter().map(|_| Default::default()).collect();
+        for (link, dep) in &inputs.bodies {
+            links[*link] = context.load(dep)?;
+        }
+        let (program, pairs) = (context.load(&inputs.solver)?, context.load(&inputs.pairs)?);
+        ArmAlone::new(&inputs.mechanism, inputs.ends, &program, links, &pairs).map_err(BuildError::Impossible)
+    }
 
     impl Build for Reachability {
         fn build(
@@ -200,52 +177,47 @@ mod build {
             parameters: &ReachabilityParameters,
             context: &Context<'_>,
         ) -> Result<ReachabilityMap, BuildError> {
-            let chain = inputs.chain();
-            let program = context.load(&inputs.solver)?;
-            let solver = Solver::new((*program).clone(), &chain)
-                .map_err(|error| BuildError::Impossible(error.to_string()))?;
-            let grid = Grid::of(&chain, parameters.step, parameters.level)
-                .ok_or_else(|| BuildError::Impossible("the first joint of the arm does not turn".into()))?;
-            let model = inputs.mechanism.model();
-            let kinematics = Kinematics::new(model.clone());
-            let mut links: TypedVec<LinkIdx, Arc<Parts3>> =
-                model.links().iter().map(|_| Default::default()).collect();
-            for (link, dep) in &inputs.bodies {
-                links[*link] = context.load(dep)?;
-            }
-            let pairs: Vec<_> = context.load(&inputs.pairs)?.tested().collect();
-            let dofs: Vec<_> = chain.variables.iter().map(|v| v.dof).collect();
-            let neutral = Configuration::neutral(model);
-            let collides = |joints: &[f64]| {
-                let mut q = neutral.clone();
-                q.set(&dofs, joints);
-                let mut poses = LinkPoses::default();
-                kinematics.link_poses(&q, &mut poses);
-                let touch = |&(a, b): &(LinkIdx, LinkIdx)| {
-                    any_within(&links[a], poses.root_from(a), &links[b], poses.root_from(b), 0.0)
-                };
-                pairs.iter().any(touch)
+            let arm = arm(inputs, context)?;
+            let sphere = context.load(&inputs.sphere)?;
+            let grid = Grid::of(arm.chain(), &sphere, parameters.step, parameters.level);
+            let effort = Effort {
+                free_samples: parameters.free_samples as usize,
+                probes: parameters.probes as usize,
+                configurations: parameters.configurations as usize,
             };
-            let options = SearchOptions { free_samples: parameters.free_samples as usize };
-            let rows: Vec<usize> = (0..grid.radial).collect();
-            let search = Search::new(&chain, &solver, grid, &options, collides);
-            let filled = context.map_in_pieces("rows", &rows, |_, &r| search.row(r))?;
-            Ok(search.assemble(filled))
+            fill(&arm, &sphere, grid, &effort, context)
         }
 
+        /// Cells that are reached as a whole, asked again at their centre and an azimuth in the middle of a sector, by
+        /// joint vectors whose forward kinematics gets there.
         fn check(
             map: &ReachabilityMap,
             inputs: &Inputs,
-            _parameters: &ReachabilityParameters,
-            _context: &Context<'_>,
+            parameters: &ReachabilityParameters,
+            context: &Context<'_>,
         ) -> Result<(), BuildError> {
-            let chain = inputs.chain();
-            let reached: Vec<usize> = (0..map.counts.len()).filter(|&cell| map.counts[cell] > 0).collect();
-            let stride = (reached.len() / CHECKED).max(1);
-            match reached.iter().step_by(stride).find(|&&cell| !witness_is_true(&chain, map, cell)) {
-                Some(cell) => Err(BuildError::Check(format!("the witness of cell {cell} does not reach it"))),
-                None => Ok(()),
+            let arm = arm(inputs, context)?;
+            let mut scratch = Scratch::default();
+            let (turning, samples) = (Turning::new(&arm), parameters.free_samples as usize);
+            let cells: Vec<usize> = (0..map.grid.len()).filter(|&c| !map.cell(c).whole.is_empty()).collect();
+            for (i, &cell) in cells.iter().step_by((cells.len() / CHECKED).max(1)).enumerate() {
+                let sectors: Vec<_> = map.cell(cell).whole.centres().collect();
+                let (_, azimuth) = sectors[i % sectors.len()];
+                let pose = map.grid.turned(&map.grid.centre(cell), azimuth);
+                let free = match map.grid.symmetric {
+                    true => turning.free_values(samples, azimuth),
+                    false => arm.free_values(samples),
+                };
+                let reached = arm.reach_with(&pose, &free, &mut scratch).is_some_and(|joints| {
+                    let off = pose.inv_mul(&arm.chain().forward(&joints));
+                    off.translation.vector.norm() < 1e-6 && off.rotation.angle() < 1e-6
+                });
+                if !reached {
+                    let place = format!("the centre of cell {cell} at azimuth {azimuth}");
+                    return Err(BuildError::Check(format!("{place} is not reached, but the map says so")));
+                }
             }
+            Ok(())
         }
     }
 }

@@ -1,0 +1,196 @@
+//! An arm by itself: exact inverse kinematics within limits and free of self-collision. What no cell decides.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use nalgebra::Point3;
+use robotc_core::geom::{ConvexParts as Parts3, any_within};
+use robotc_core::ids::{Idx, LinkIdx};
+use robotc_core::ik::{IkSolutions, InverseKinematics};
+use robotc_core::model::{ChainMotion, SerialChain};
+use robotc_core::{Configuration, DofIdx, Kinematics, LinkPoses, Pose, TypedVec};
+use robotc_ikgen::{Program, Solver};
+
+use crate::kinds::{ArmPairs, ConvexParts, IkSolver, LinkPairs};
+use crate::project::{OfArm, OfShape, Subject};
+use crate::projection::{Limits, Mechanism};
+use crate::resolve::{Knowledge, LoadError};
+
+/// An arm with what it carries rigidly, seen apart from the rest of its robot.
+///
+/// Fingers and other arms are not part of it: their posture changes, and a plan is checked with them anyhow.
+pub struct ArmAlone {
+    pub(super) chain: SerialChain,
+    pub(super) solver: Solver,
+    pub(super) kinematics: Kinematics,
+    #[cfg_attr(not(feature = "build"), expect(dead_code, reason = "only building a map needs it"))]
+    pub(super) base: LinkIdx,
+    tip: LinkIdx,
+    dofs: Vec<DofIdx>,
+    pub(super) links: TypedVec<LinkIdx, Arc<Parts3>>,
+    /// Pairs of links that the first joint moves together: what it does is nothing to them.
+    pub(super) together: Vec<(LinkIdx, LinkIdx)>,
+    /// Pairs of a link that stays with the base, and one that the first joint moves.
+    pub(super) against_base: Vec<(LinkIdx, LinkIdx)>,
+}
+
+/// Room for intermediate results, so that a loop allocates once.
+#[derive(Default)]
+pub struct Scratch {
+    pub(super) solutions: IkSolutions,
+    pub(super) joints: Vec<f64>,
+    configuration: Option<Configuration>,
+    pub(super) poses: LinkPoses,
+}
+
+impl ArmAlone {
+    /// An arm from its mechanism, with the indices of base and tip there, and artefacts. `links` holds the shapes by
+    /// link of the mechanism. The error says why the program does not fit.
+    pub fn new(
+        mechanism: &Mechanism,
+        [base, tip]: [LinkIdx; 2],
+        program: &Program,
+        links: TypedVec<LinkIdx, Arc<Parts3>>,
+        pairs: &LinkPairs,
+    ) -> Result<Self, String> {
+        let kinematics = Kinematics::new(mechanism.model().clone());
+        let chain = SerialChain::between(&kinematics, base, tip).map_err(|error| error.to_string())?;
+        let solver = Solver::new(program.clone(), &chain).map_err(|error| error.to_string())?;
+        let model = kinematics.model();
+        let dofs: Vec<DofIdx> = chain.variables.iter().map(|variable| variable.dof).collect();
+        let moved = model.subtree(model.joints()[model.dofs()[dofs[0]].joint].child);
+        let (mut together, mut against_base) = (Vec::new(), Vec::new());
+        for &(a, b) in &pairs.0 {
+            match (moved.contains(&a), moved.contains(&b)) {
+                (true, true) => together.push((a, b)),
+                (true, false) => against_base.push((b, a)),
+                _ => against_base.push((a, b)),
+            }
+        }
+        Ok(Self { chain, solver, kinematics, base, tip, dofs, links, together, against_base })
+    }
+
+    /// An arm of a compiled robot.
+    pub fn load(knowledge: &Knowledge, arm: usize) -> Result<Self, LoadError> {
+        let project = knowledge.graph().project();
+        let robot = project.robot();
+        let unplanned = || LoadError::NotPlanned { kind: "ik_solver", subject: OfArm(arm).label(project) };
+        let (base, tip) = (robot.arms[arm].base, robot.arms[arm].tip);
+        let (mechanism, ends, originals) =
+            Mechanism::arm(&robot.model, base, tip, Limits::Kept).map_err(|_| unplanned())?;
+        let mut links: TypedVec<LinkIdx, Arc<Parts3>> =
+            originals.iter().map(|_| Default::default()).collect();
+        for (i, &link) in originals.iter().enumerate() {
+            if !robot.model.links()[link].collisions.is_empty() {
+                links[LinkIdx::new(i)] = knowledge.load::<ConvexParts>(&OfShape::Link(link))?;
+            }
+        }
+        let program = knowledge.load::<IkSolver>(&OfArm(arm))?;
+        let pairs = knowledge.load::<ArmPairs>(&OfArm(arm))?;
+        Self::new(&mechanism, ends, &program, links, &pairs).map_err(|_| unplanned())
+    }
+
+    /// The chain from base to tip.
+    pub fn chain(&self) -> &SerialChain {
+        &self.chain
+    }
+
+    /// Whether the arm touches itself or what it stands on. `joints` are the values of the chain's variables.
+    pub fn collides(&self, joints: &[f64], scratch: &mut Scratch) -> bool {
+        self.pose(joints, scratch);
+        self.touch(&self.together, &scratch.poses) || self.touch(&self.against_base, &scratch.poses)
+    }
+
+    /// A joint vector that reaches a tip pose within limits and without self-collision; `None` when there is none for
+    /// `samples` evenly spaced values of each free joint.
+    pub fn reach(&self, base_from_tip: &Pose, samples: usize, scratch: &mut Scratch) -> Option<Vec<f64>> {
+        self.reach_with(base_from_tip, &self.free_values(samples), scratch)
+    }
+
+    /// As [`reach`](Self::reach), for these values of the free joints.
+    pub fn reach_with(
+        &self,
+        base_from_tip: &Pose,
+        free: &[Vec<f64>],
+        scratch: &mut Scratch,
+    ) -> Option<Vec<f64>> {
+        let mut solutions = std::mem::take(&mut scratch.solutions);
+        let mut joints = std::mem::take(&mut scratch.joints);
+        let found = free.iter().find_map(|values| {
+            self.solver.solve(base_from_tip, values, &mut solutions);
+            solutions.iter().find_map(|solution| {
+                let fits = self.within_limits(solution, 0, &mut joints) && !self.collides(&joints, scratch);
+                fits.then(|| joints.clone())
+            })
+        });
+        (scratch.solutions, scratch.joints) = (solutions, joints);
+        found
+    }
+
+    /// Manipulability at a joint vector: the square root of det(J J^T) of the tip's 6-row Jacobian, angles in radians and
+    /// lengths in metres (Yoshikawa, "Manipulability of robotic mechanisms", 1985). Zero where the arm is singular, and for
+    /// arms with fewer than six joints.
+    pub fn manipulability(&self, joints: &[f64]) -> f64 {
+        let mut scratch = Scratch::default();
+        self.pose(joints, &mut scratch);
+        let all = self.kinematics.jacobian(&scratch.poses, self.tip, &Point3::origin());
+        let columns: Vec<_> = self.dofs.iter().map(|dof| all.column(dof.index())).collect();
+        let jacobian = nalgebra::Matrix6xX::from_columns(&columns);
+        (&jacobian * jacobian.transpose()).determinant().max(0.0).sqrt()
+    }
+
+    pub(super) fn pose(&self, joints: &[f64], scratch: &mut Scratch) {
+        let neutral = || Configuration::neutral(self.kinematics.model());
+        let q = scratch.configuration.get_or_insert_with(neutral);
+        q.set(&self.dofs, joints);
+        self.kinematics.link_poses(q, &mut scratch.poses);
+    }
+
+    pub(super) fn touch(&self, pairs: &[(LinkIdx, LinkIdx)], poses: &LinkPoses) -> bool {
+        pairs.iter().any(|&(a, b)| {
+            any_within(&self.links[a], poses.root_from(a), &self.links[b], poses.root_from(b), 0.0)
+        })
+    }
+
+    /// Brings every joint from `first` on within its limits by full turns; `false` when one cannot be.
+    pub(super) fn within_limits(&self, solution: &[f64], first: usize, joints: &mut Vec<f64>) -> bool {
+        joints.clear();
+        joints.extend_from_slice(solution);
+        let turn = std::f64::consts::TAU;
+        for (i, variable) in self.chain.variables.iter().enumerate().skip(first) {
+            let inside = |v: f64| (variable.lower..=variable.upper).contains(&v);
+            if inside(joints[i]) {
+                continue;
+            }
+            let joint = self.chain.joints.iter().find(|joint| joint.variable == i);
+            let revolves = joint.is_some_and(|joint| joint.motion == ChainMotion::Revolute);
+            match [joints[i] - turn, joints[i] + turn].into_iter().find(|v| revolves && inside(*v)) {
+                Some(value) => joints[i] = value,
+                None => return false,
+            }
+        }
+        true
+    }
+
+    /// Evenly spaced values of the free joints within their limits: all combinations, one empty one without free joints.
+    pub fn free_values(&self, samples: usize) -> Vec<Vec<f64>> {
+        self.combinations(samples, |variable| {
+            let v = &self.chain.variables[variable];
+            let limited = v.lower.is_finite() && v.upper.is_finite();
+            if limited { (v.lower, v.upper) } else { (-PI, PI) }
+        })
+    }
+
+    pub(super) fn combinations(&self, samples: usize, range: impl Fn(usize) -> (f64, f64)) -> Vec<Vec<f64>> {
+        let mut combinations = vec![Vec::new()];
+        for &variable in self.solver.free_variables() {
+            let (low, high) = range(variable);
+            let value = |k: usize| low + (high - low) * (k as f64 + 0.5) / samples as f64;
+            let longer = |combination: Vec<f64>| {
+                (0..samples).map(move |k| [combination.as_slice(), &[value(k)]].concat())
+            };
+            combinations = combinations.into_iter().flat_map(longer).collect();
+        }
+        combinations
+    }
+}
