@@ -11,7 +11,7 @@ use crate::codec;
 use crate::kind::DecodeError;
 
 /// Most cells that a map may have: what a decoder may be made to allocate.
-const MOST_CELLS: usize = 1 << 28;
+const MOST_CELLS: usize = 1 << 26;
 
 /// Cells are stored as runs of equal ones. A cell is its position in `kinds`, which are sorted; `runs` holds, in turns, such
 /// a position and a length.
