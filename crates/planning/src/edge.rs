@@ -22,6 +22,16 @@ pub struct Blocked {
     pub by: Obstruction,
 }
 
+/// How much work a motion is worth that passes narrowly.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Patience {
+    /// Every free motion is found free.
+    #[default]
+    Thorough,
+    /// A motion that would take long to prove free may count as blocked.
+    Hasty,
+}
+
 /// Validity of states and of the straight motions between them: all that a planner knows about a robot and its world.
 ///
 /// Methods take `&mut self` because checkers keep scratch space and count their work.
@@ -50,6 +60,9 @@ pub trait EdgeChecker {
         bisect_edge(self, from, to)
     }
 
+    /// How much work the next edges are worth. Checkers whose every edge costs the same do not care.
+    fn set_patience(&mut self, _: Patience) {}
+
     /// A clause naming an obstruction: `"hand touches table"`.
     fn describe(&self, obstruction: Obstruction) -> String {
         match obstruction {
@@ -61,18 +74,28 @@ pub trait EdgeChecker {
 }
 
 /// States of a straight motion, in one buffer.
-struct Motion<'a> {
+pub(crate) struct Motion<'a> {
     from: &'a [f64],
     difference: Vec<f64>,
     q: Vec<f64>,
 }
 
 impl<'a> Motion<'a> {
-    fn new(space: &Space, from: &'a [f64], to: &[f64]) -> Self {
+    pub(crate) fn new(space: &Space, from: &'a [f64], to: &[f64]) -> Self {
         Self { from, difference: space.difference(from, to), q: from.to_vec() }
     }
 
-    fn check<C: EdgeChecker + ?Sized>(&mut self, checker: &mut C, fraction: f64) -> Result<f64, Blocked> {
+    /// The whole motion.
+    pub(crate) fn difference(&self) -> &[f64] {
+        &self.difference
+    }
+
+    /// The clearance of the state a fraction of the way along.
+    pub(crate) fn check<C: EdgeChecker + ?Sized>(
+        &mut self,
+        checker: &mut C,
+        fraction: f64,
+    ) -> Result<f64, Blocked> {
         for (x, (a, d)) in self.q.iter_mut().zip(self.from.iter().zip(&self.difference)) {
             *x = a + fraction * d;
         }

@@ -3,18 +3,22 @@
 //! Planners work on a [`Space`] and an [`EdgeChecker`] and never see a robot.
 
 pub mod arm;
+pub mod bench;
 pub mod bispace;
 pub mod budget;
 pub mod caging;
 pub mod cartesian;
+pub mod certify;
 pub mod constraint;
 pub mod edge;
 pub mod explore;
 pub mod goal;
 pub mod grasp;
 pub mod jitter;
+pub mod lanes;
 pub mod manipulation;
 pub mod mechanism;
+pub mod motion;
 pub mod placement;
 pub mod problem;
 #[cfg(test)]
@@ -36,13 +40,16 @@ mod tree;
 pub use arm::{ArmError, ArmModel};
 pub use budget::{Budget, Interrupt};
 pub use cartesian::{LineFailure, LineObstacle, LineOptions, cartesian_line};
+pub use certify::{Unproven, certify_path};
 pub use constraint::{Constraint, HeldMechanism, RegionError, RegionTolerance, TaskRegion, Upright};
-pub use edge::{Blocked, EdgeChecker, Obstruction};
+pub use edge::{Blocked, EdgeChecker, Obstruction, Patience};
 pub use explore::{ExploreFailure, ExploreOptions, ExploreSolution, FixedMotion, explore, make_way};
 pub use goal::{FixedGoals, GoalDraw, GoalSampler};
 pub use grasp::{Contact, Grasp, GraspSet, Steadiness};
 pub use jitter::{JitterFailure, JitterOptions, Jittered, jitter};
+pub use lanes::{LaneChecker, LaneRobot};
 pub use mechanism::{Mechanism, MechanismMotion};
+pub use motion::{MotionFailure, MotionOptions, MotionPlan, plan_motion};
 pub use problem::{PathPlanner, PlanningProblem, Registry, solve};
 pub use reachability::Reachability;
 pub use rrt::{Gap, RrtConnect, RrtFailure, RrtOptions, RrtSolution};

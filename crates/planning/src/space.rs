@@ -47,6 +47,13 @@ impl Space {
         self.axes.iter().zip(from.iter().zip(to)).map(|(axis, (&a, &b))| axis.difference(a, b)).collect()
     }
 
+    /// [`difference`](Self::difference) into memory that is there already.
+    pub fn difference_into(&self, from: &[f64], to: &[f64], difference: &mut Vec<f64>) {
+        difference.clear();
+        let each = self.axes.iter().zip(from.iter().zip(to));
+        difference.extend(each.map(|(axis, (&a, &b))| axis.difference(a, b)));
+    }
+
     /// Distance in the metric: the Euclidean norm of the weighted difference.
     pub fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         self.squared_distance(a, b).sqrt()
@@ -68,6 +75,12 @@ impl Space {
         self.axes.iter().zip(from.iter().zip(to)).map(along).collect()
     }
 
+    /// [`interpolate`](Self::interpolate), appended to memory that is there already.
+    pub fn interpolate_into(&self, from: &[f64], to: &[f64], t: f64, out: &mut Vec<f64>) {
+        let each = self.axes.iter().zip(from.iter().zip(to));
+        out.extend(each.map(|(axis, (&a, &b))| a + t * axis.difference(a, b)));
+    }
+
     /// Whether all coordinates are in bounds.
     pub fn contains(&self, q: &[f64]) -> bool {
         self.axes.iter().zip(q).all(|(axis, &x)| axis.wraps || (axis.lower <= x && x <= axis.upper))
@@ -84,8 +97,17 @@ impl Space {
 
     /// A uniform state; wrapping coordinates in [-pi, pi).
     pub fn sample(&self, rng: &mut Rng) -> Vec<f64> {
-        let draw = |axis: &Axis| if axis.wraps { (-PI, PI) } else { (axis.lower, axis.upper) };
-        self.axes.iter().map(draw).map(|(low, high)| rng.range(low, high)).collect()
+        let mut q = vec![0.0; self.dimension()];
+        self.sample_into(&mut q, rng);
+        q
+    }
+
+    /// [`sample`](Self::sample) into memory that is there already.
+    pub fn sample_into(&self, q: &mut [f64], rng: &mut Rng) {
+        for (x, axis) in q.iter_mut().zip(&self.axes) {
+            let (low, high) = if axis.wraps { (-PI, PI) } else { (axis.lower, axis.upper) };
+            *x = rng.range(low, high);
+        }
     }
 
     /// A state in a random direction at `distance` from `centre`, moved into the bounds.

@@ -19,6 +19,7 @@ mod query;
 mod quick_hull;
 mod reduce;
 mod shape;
+mod sphere_cover;
 mod surface;
 
 pub use aabb::Aabb;
@@ -33,4 +34,5 @@ pub use query::{
     Contact, Distance, Separation, any_within, contact, distance, intersects, separation, within,
 };
 pub use shape::{parts_of, parts_of_shape};
+pub use sphere_cover::{CoverOptions, SphereCover, SphereNode};
 pub use surface::surface;

@@ -12,8 +12,9 @@ mod shape;
 use std::sync::Arc;
 
 use nalgebra::Point3;
-use robotc_core::geom::{ConvexParts, contact, distance, within};
+use robotc_core::geom::{ConvexPart, ConvexParts, contact, distance, within};
 use robotc_core::ids::Idx;
+use robotc_core::model::Geometry;
 use robotc_core::world::World;
 use robotc_core::{BodyIdx, Configuration, Kinematics, LinkIdx, LinkPoses, Pose, TypedVec};
 
@@ -36,6 +37,8 @@ pub struct Scene {
 #[derive(Debug, Clone)]
 struct Body {
     name: Arc<str>,
+    /// What the parts cover.
+    geometry: Arc<Vec<Geometry>>,
     shape: Arc<Shape>,
     world_from_body: Pose,
     body_from_world: Pose,
@@ -92,6 +95,7 @@ impl Scene {
     ) -> Self {
         let body = |(body, parts): (&robotc_core::world::Body, &Arc<ConvexParts>)| Body {
             name: body.name.as_str().into(),
+            geometry: body.geometry.clone(),
             shape: Arc::new(if body.enabled {
                 Shape::new(parts)
             } else {
@@ -122,6 +126,32 @@ impl Scene {
     /// Where a body is.
     pub fn world_from_body(&self, body: BodyIdx) -> &Pose {
         &self.bodies[body].world_from_body
+    }
+
+    /// Number of links of the robot.
+    pub(crate) fn links(&self) -> usize {
+        self.links.len()
+    }
+
+    /// Convex parts of a link, in its frame.
+    pub(crate) fn link_parts(&self, link: LinkIdx) -> impl Iterator<Item = &ConvexPart> {
+        self.links[link].parts.iter().map(|part| &part.part)
+    }
+
+    /// Convex parts of a body, in its frame.
+    pub(crate) fn body_parts(&self, body: BodyIdx) -> impl Iterator<Item = &ConvexPart> {
+        self.bodies[body].shape.parts.iter().map(|part| &part.part)
+    }
+
+    /// Bodies that have a shape: where they are, what they look like, and the convex parts that cover them.
+    pub(crate) fn solids(
+        &self,
+    ) -> impl Iterator<Item = (BodyIdx, Pose, &[Geometry], impl Iterator<Item = &ConvexPart>)> {
+        let solid = self.bodies.enumerate().filter(|(_, body)| !body.shape.is_empty());
+        solid.map(|(index, body)| {
+            let parts = body.shape.parts.iter().map(|part| &part.part);
+            (index, body.world_from_body, body.geometry.as_slice(), parts)
+        })
     }
 
     /// Moves a body.

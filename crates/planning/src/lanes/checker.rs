@@ -1,0 +1,424 @@
+//! The edge checker over the lane kernel: whole motions proven free, or shown to be blocked.
+
+use pulp::{Simd, WithSimd};
+use robotc_core::geom::{ConvexPart, distance, within};
+use robotc_core::ids::Idx;
+use robotc_core::{BodyIdx, Pose};
+
+use super::Width;
+use super::kernel::{Around, Close, MOST_LANES, Motion, Scratch, look};
+use super::mechanism::{Body, LaneRobot, number_of};
+use super::obstacle::Obstacle;
+use crate::edge::{Blocked, EdgeChecker, Obstruction, Patience};
+use crate::scene::Scene;
+use crate::space::Space;
+
+/// Checks motions of a robot among the bodies of a scene, several configurations at a time.
+///
+/// An edge is cut into stretches, a multiple of sixteen whatever the number of lanes. A stretch is settled when spheres that
+/// contain the robot cannot reach anything within it, or when spheres inside of the robot touch something; others are
+/// halved. Where that does not help, since a gap is too narrow for spheres, the convex parts themselves decide, by
+/// conservative advancement. A free edge is thus free as a whole, at every state between its ends.
+pub struct LaneChecker<'a> {
+    robot: &'a LaneRobot,
+    scene: &'a Scene,
+    space: &'a Space,
+    width: Width,
+    obstacles: Vec<Obstacle>,
+    /// The body of the scene that each obstacle belongs to.
+    owners: Vec<BodyIdx>,
+    near: Vec<Vec<(u32, f32)>>,
+    margin: f64,
+    patience: Patience,
+    work: Work,
+    statistics: LaneStatistics,
+}
+
+/// What a checker did.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct LaneStatistics {
+    /// Motions asked for.
+    pub edges: u64,
+    /// Stretches looked at in lanes.
+    pub stretches: u64,
+    /// Distances of convex parts asked for.
+    pub distances: u64,
+}
+
+/// Memory kept between calls.
+#[derive(Default)]
+struct Work {
+    motion: Motion,
+    scratch: Scratch,
+    /// Stretches of the edge still to be looked at: middle and half length.
+    queue: Vec<(f32, f32)>,
+    /// Stretches that the spheres do not settle, with what is close there.
+    gaps: Vec<(f32, f32, Close)>,
+    difference: Vec<f64>,
+    values: Vec<f64>,
+    frames: Vec<Pose>,
+    pieces: Vec<(f64, f64)>,
+}
+
+/// Stretches of an edge are a multiple of this, so that their places do not depend on the number of lanes.
+const STRETCHES: usize = MOST_LANES;
+
+/// No stretch is longer than this at first, in the metric of the space.
+const LONGEST: f64 = 1.0 / 16.0;
+
+/// Stretches in which nothing moves farther than this, in metres, are left to the convex parts.
+const FINE: f64 = 4e-3;
+
+/// Bodies this close to each other count as touching, metres: conservative advancement would not get past them.
+const TOUCH: f64 = 2e-5;
+
+/// Stretches of one edge after which it counts as blocked.
+const MOST_STRETCHES: usize = 8192;
+
+impl<'a> LaneChecker<'a> {
+    /// Motions of `robot`, whose degrees of freedom are the coordinates of `space`, among the bodies of `scene`. Robot and
+    /// bodies stay `margin` metres apart; links may come closer to each other.
+    pub fn new(robot: &'a LaneRobot, scene: &'a Scene, space: &'a Space, margin: f64, width: Width) -> Self {
+        let mut obstacles = Vec::new();
+        let mut owners = Vec::new();
+        let root_from_world = scene.world_from_robot().inverse();
+        for (body, root_from_body, geometry, parts) in scene.solids() {
+            let root_from_body = root_from_world * root_from_body;
+            let primitives: Option<Vec<Obstacle>> = geometry
+                .iter()
+                .map(|g| Obstacle::of_shape(&g.shape, &(root_from_body * g.origin.pose())))
+                .collect();
+            let solids = primitives
+                .unwrap_or_else(|| parts.map(|part| Obstacle::of_part(part, &root_from_body)).collect());
+            owners.extend(solids.iter().map(|_| body));
+            obstacles.extend(solids);
+        }
+        let near = near(robot, &obstacles, margin);
+        let (work, statistics) = (Work::default(), LaneStatistics::default());
+        Self {
+            robot,
+            scene,
+            space,
+            width,
+            obstacles,
+            owners,
+            near,
+            margin,
+            patience: Patience::Thorough,
+            work,
+            statistics,
+        }
+    }
+
+    /// What was done so far.
+    pub fn statistics(&self) -> LaneStatistics {
+        self.statistics
+    }
+
+    /// Whether the motion is free; if not, where and why.
+    fn check(&mut self, from: &[f64], stretches: usize) -> Result<(), Blocked> {
+        self.statistics.edges += 1;
+        self.work.prepare(self.robot, from, stretches);
+        let around = Around { obstacles: &self.obstacles, near: &self.near };
+        let pass = Pass {
+            robot: self.robot,
+            around,
+            work: &mut self.work,
+            stretches: &mut self.statistics.stretches,
+        };
+        if let Some((fraction, close)) = self.width.dispatch(pass) {
+            return Err(Blocked { fraction: f64::from(fraction), by: self.obstruction(close) });
+        }
+        if let (Patience::Hasty, Some(&(middle, _, close))) = (self.patience, self.work.gaps.first()) {
+            return Err(Blocked { fraction: f64::from(middle), by: self.obstruction(close) });
+        }
+        for i in 0..self.work.gaps.len() {
+            let (middle, half, close) = self.work.gaps[i];
+            self.settle(from, f64::from(middle), f64::from(half), close)?;
+        }
+        Ok(())
+    }
+
+    /// Decides by the convex parts whether two things that are close stay apart within a stretch.
+    fn settle(&mut self, from: &[f64], middle: f64, half: f64, close: Close) -> Result<(), Blocked> {
+        let blocked = |fraction, by| Err(Blocked { fraction, by });
+        let mut pieces = std::mem::take(&mut self.work.pieces);
+        pieces.clear();
+        pieces.push((middle, half));
+        let speed = self.speed(close);
+        while let Some((middle, half)) = pieces.pop() {
+            let gap = self.gap(from, middle, half * speed, close);
+            self.statistics.distances += 1;
+            if gap > half * speed {
+                continue;
+            }
+            if gap <= TOUCH {
+                let by = self.obstruction(close);
+                self.work.pieces = pieces;
+                return blocked(middle, by);
+            }
+            // What is known of the middle of this stretch leaves two pieces of it open.
+            let known = gap / speed;
+            let rest = 0.5 * (half - known);
+            for side in [-1.0, 1.0] {
+                pieces.push((middle + side * (known + rest), rest));
+            }
+        }
+        self.work.pieces = pieces;
+        Ok(())
+    }
+
+    /// A bound on how fast two things come together, metres per motion.
+    fn speed(&self, close: Close) -> f64 {
+        let sum = |chain: &[(usize, f64)]| -> f64 {
+            chain.iter().map(|&(step, distance)| self.work.change(self.robot, step) * distance).sum()
+        };
+        match close {
+            Close::Obstacle { body, .. } => sum(&self.robot.bodies[body as usize].chain),
+            Close::Pair(pair) => sum(&self.robot.pairs[pair as usize].closing),
+        }
+    }
+
+    /// The distance of two things at a fraction of the motion, less the margin; infinite when it is more than `far`.
+    fn gap(&mut self, from: &[f64], fraction: f64, far: f64, close: Close) -> f64 {
+        let robot = self.robot;
+        let Work { values, difference, frames, .. } = &mut self.work;
+        values.clear();
+        values.extend(from.iter().zip(difference.iter()).map(|(a, d)| a + fraction * d));
+        robot.poses(values, frames);
+        let scene = self.scene;
+        let link = |body: usize| {
+            let body = &robot.bodies[body];
+            let parts = body.link.map(|link| scene.link_parts(link));
+            (frames[body.frame] * body.frame_from_body, parts.into_iter().flatten())
+        };
+        let mut least = f64::INFINITY;
+        match close {
+            Close::Obstacle { body, obstacle } => {
+                let owner = self.owners[obstacle as usize];
+                let root_from_other = scene.world_from_robot().inv_mul(scene.world_from_body(owner));
+                let (root_from_body, parts) = link(body as usize);
+                for part in parts {
+                    for other in scene.body_parts(owner) {
+                        let gap = apart(part, &root_from_body, other, &root_from_other, far + self.margin);
+                        least = least.min(gap - self.margin);
+                    }
+                }
+            }
+            Close::Pair(pair) => {
+                let pair = &robot.pairs[pair as usize];
+                let ((root_from_a, parts_a), (root_from_b, _)) = (link(pair.a), link(pair.b));
+                for part in parts_a {
+                    for other in link(pair.b).1 {
+                        least = least.min(apart(part, &root_from_a, other, &root_from_b, far));
+                    }
+                }
+            }
+        }
+        least
+    }
+
+    fn obstruction(&self, close: Close) -> Obstruction {
+        let body = |body: usize| self.robot.bodies[body].link.map_or(0, number_of);
+        let (a, b) = match close {
+            Close::Obstacle { body: own, obstacle } => {
+                let other = self.scene.links() + self.owners[obstacle as usize].index();
+                (body(own as usize), other)
+            }
+            Close::Pair(pair) => {
+                let pair = &self.robot.pairs[pair as usize];
+                (body(pair.a), body(pair.b))
+            }
+        };
+        Obstruction::Contact((a as u32) << 16 | b as u32)
+    }
+}
+
+fn apart(a: &ConvexPart, root_from_a: &Pose, b: &ConvexPart, root_from_b: &Pose, far: f64) -> f64 {
+    // To know that they are far apart takes less than to know how far.
+    if !within(a, root_from_a, b, root_from_b, far) {
+        return f64::INFINITY;
+    }
+    distance(a, root_from_a, b, root_from_b).distance
+}
+
+/// For each body, the obstacles that it can come near to in any configuration.
+fn near(robot: &LaneRobot, obstacles: &[Obstacle], margin: f64) -> Vec<Vec<(u32, f32)>> {
+    let reach_of = |body: &Body| -> Vec<(u32, f32)> {
+        let Some(&(first, reach)) = body.chain.first() else { return vec![] };
+        // All of the body stays within its reach of the first joint that turns; sliding joints leave no fixed middle.
+        let fixed = body.chain.iter().all(|&(step, _)| !robot.steps[step].slides);
+        let middle = robot.steps[first].parent_from_joint.translation.vector;
+        let beyond = |obstacle: &Obstacle| {
+            let (centre, radius) = obstacle.ball;
+            let away = nalgebra::Vector3::from(centre) - middle;
+            fixed && body.chain.len() > 1 && away.norm() > reach + radius + margin + 1e-3
+        };
+        let list = obstacles.iter().enumerate().filter(|(_, obstacle)| !beyond(obstacle));
+        list.map(|(i, _)| (i as u32, margin as f32)).collect()
+    };
+    robot.bodies.iter().map(reach_of).collect()
+}
+
+impl Work {
+    /// Numbers of the motion by `difference` from `from`, and its first stretches.
+    fn prepare(&mut self, robot: &LaneRobot, from: &[f64], stretches: usize) {
+        let Motion { steps, bends, pairs, .. } = &mut self.motion;
+        steps.clear();
+        bends.clear();
+        pairs.clear();
+        for step in &robot.steps {
+            let (start, change) = step.motion(from, &self.difference);
+            steps.push((start as f32, change as f32));
+        }
+        let change = |step: usize| f64::from(steps[step].1.abs());
+        // A hair more, for rounding.
+        let above = |x: f64| (x * (1.0 + 1e-6)) as f32;
+        for body in &robot.bodies {
+            // Second derivative of a point by two joints, the second one farther out: no more than its distance from the
+            // axis of that one; nothing when the first one slides.
+            let (mut bend, mut turned) = (0.0, 0.0);
+            for &(step, distance) in &body.chain {
+                let own = change(step);
+                if robot.steps[step].slides {
+                    bend += own * distance * 2.0 * turned;
+                } else {
+                    bend += own * distance * (own + 2.0 * turned);
+                    turned += own;
+                }
+            }
+            bends.push(above(0.5 * bend));
+        }
+        for (i, pair) in robot.pairs.iter().enumerate() {
+            if pair.apart.as_ref().is_some_and(|apart| apart.holds(from, &self.difference)) {
+                continue;
+            }
+            let closing = pair.closing.iter().map(|&(step, distance)| change(step) * distance).sum();
+            pairs.push((i as u32, above(closing)));
+        }
+        // Nothing moves faster than this, metres per motion.
+        let speed = |body: &Body| body.chain.iter().map(|&(step, distance)| change(step) * distance).sum();
+        let fastest = robot.bodies.iter().map(speed).fold(0.0_f64, f64::max);
+        self.motion.halvable = (FINE / fastest.max(FINE)) as f32;
+        self.gaps.clear();
+        self.queue.clear();
+        let half = 0.5 / stretches as f32;
+        self.queue.extend((0..stretches).map(|i| ((2 * i + 1) as f32 * half, half * (1.0 + 1e-6))));
+    }
+
+    /// Change of a joint along the motion, its size.
+    fn change(&self, robot: &LaneRobot, step: usize) -> f64 {
+        let step = &robot.steps[step];
+        (step.factor * self.difference[step.column]).abs()
+    }
+}
+
+/// All stretches of one edge.
+struct Pass<'a> {
+    robot: &'a LaneRobot,
+    around: Around<'a>,
+    work: &'a mut Work,
+    stretches: &'a mut u64,
+}
+
+impl WithSimd for Pass<'_> {
+    /// Where it is blocked, and by what.
+    type Output = Option<(f32, Close)>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let Work { motion, scratch, queue, gaps, .. } = self.work;
+        let lanes = S::F32_LANES;
+        let first = queue.len();
+        let mut next = 0;
+        while next < queue.len() {
+            let count = (queue.len() - next).min(lanes);
+            let (mut middles, mut halves) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
+            let picks: [usize; MOST_LANES] = std::array::from_fn(|lane| {
+                // The first stretches are taken from all over the edge.
+                let blocks = (first / lanes).max(1);
+                if next < first && first % lanes == 0 {
+                    (lane % lanes) * blocks + next / lanes
+                } else {
+                    next + lane.min(count - 1)
+                }
+            });
+            for lane in 0..lanes {
+                (middles[lane], halves[lane]) = queue[picks[lane]];
+            }
+            next += count;
+            *self.stretches += count as u64;
+            let hit =
+                look(simd, self.robot, &self.around, motion, &middles[..lanes], &halves[..lanes], scratch);
+            if let Some((lane, close)) = hit {
+                return Some((middles[lane], close));
+            }
+            for lane in 0..count {
+                if scratch.open[lane] == 0.0 {
+                    continue;
+                }
+                let (middle, half) = (middles[lane], halves[lane]);
+                if half > motion.halvable {
+                    let quarter = 0.5 * half;
+                    queue.push((middle - quarter, quarter * (1.0 + 1e-6)));
+                    queue.push((middle + quarter, quarter * (1.0 + 1e-6)));
+                } else {
+                    gaps.extend(scratch.close.iter().map(|&close| (middle, half, close)));
+                }
+            }
+            if queue.len() > MOST_STRETCHES {
+                return Some((middles[0], scratch.widest));
+            }
+        }
+        None
+    }
+}
+
+impl EdgeChecker for LaneChecker<'_> {
+    fn space(&self) -> &Space {
+        self.space
+    }
+
+    fn state(&mut self, q: &[f64]) -> Result<f64, Obstruction> {
+        if !self.space.contains(q) {
+            return Err(Obstruction::Bounds);
+        }
+        self.work.difference.clear();
+        self.work.difference.resize(q.len(), 0.0);
+        self.check(q, 1).map(|()| 0.0).map_err(|blocked| blocked.by)
+    }
+
+    fn travel(&self, difference: &[f64]) -> f64 {
+        difference.iter().map(|d| d * d).sum::<f64>().sqrt()
+    }
+
+    fn resolution(&self) -> f64 {
+        LONGEST
+    }
+
+    fn edge(&mut self, from: &[f64], to: &[f64]) -> Result<(), Blocked> {
+        if !self.space.contains(to) {
+            return Err(Blocked { fraction: 1.0, by: Obstruction::Bounds });
+        }
+        let mut difference = std::mem::take(&mut self.work.difference);
+        self.space.difference_into(from, to, &mut difference);
+        self.work.difference = difference;
+        let length = self.space.distance(from, to);
+        let blocks = (length / (LONGEST * STRETCHES as f64)).ceil().max(1.0);
+        self.check(from, blocks as usize * STRETCHES)
+    }
+
+    fn set_patience(&mut self, patience: Patience) {
+        self.patience = patience;
+    }
+
+    fn describe(&self, obstruction: Obstruction) -> String {
+        match obstruction {
+            Obstruction::Bounds => "a joint limit is exceeded".into(),
+            Obstruction::Constraint => "the path constraint is violated".into(),
+            Obstruction::Contact(n) => {
+                self.scene.describe(obstruction).unwrap_or_else(|| format!("contact {n}"))
+            }
+        }
+    }
+}

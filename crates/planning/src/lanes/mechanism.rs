@@ -1,0 +1,314 @@
+//! The robot as the lane kernel sees it: moving frames in a row, and on each of them bodies made of spheres.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use nalgebra::{Point3, Rotation3, Unit, UnitQuaternion, Vector3};
+use robotc_core::geom::{ConvexParts, SphereCover};
+use robotc_core::ids::Idx;
+use robotc_core::model::{Drive, JointMotion};
+use robotc_core::{Configuration, DofIdx, JointIdx, Kinematics, LinkIdx, Pose, TypedVec};
+
+use super::apart::Apart;
+
+/// A robot prepared for vectorised checks of motions of some of its degrees of freedom.
+#[derive(Debug, Clone)]
+pub struct LaneRobot {
+    pub(super) steps: Vec<Step>,
+    pub(super) bodies: Vec<Body>,
+    pub(super) pairs: Vec<Pair>,
+    /// Spheres of all bodies, in the frames of the bodies.
+    pub(super) spheres: Vec<Sphere>,
+    /// For each link, the frame that carries it and where it is in that frame.
+    pub(super) carriers: TypedVec<LinkIdx, (usize, Pose)>,
+    /// How far rounding can move a computed point at most, metres.
+    pub(super) rounding: f64,
+}
+
+/// A joint that moves. Frame `i + 1` is the one that step `i` moves; frame 0 is the root of the robot.
+#[derive(Debug, Clone)]
+pub(super) struct Step {
+    /// The frame that it hangs on.
+    pub(super) parent: usize,
+    /// Which degree of freedom gives its value.
+    pub(super) column: usize,
+    /// value = factor * degree of freedom + offset
+    pub(super) factor: f64,
+    pub(super) offset: f64,
+    pub(super) slides: bool,
+    /// Where the joint is in its parent frame, its axis along z.
+    pub(super) parent_from_joint: Pose,
+    /// The same in single precision: rows of the rotation, and the translation.
+    pub(super) rows: [[f32; 3]; 3],
+    pub(super) shift: [f32; 3],
+}
+
+/// A rigid body of the robot.
+#[derive(Debug, Clone)]
+pub(super) struct Body {
+    /// The link, or `None` for something that is held.
+    pub(super) link: Option<LinkIdx>,
+    pub(super) frame: usize,
+    /// Where the body is in its frame.
+    pub(super) frame_from_body: Pose,
+    /// Its spheres; the first is the ball around all of it.
+    pub(super) spheres: std::ops::Range<usize>,
+    /// Steps that move it, from the root on, each with the largest distance of any of its points from the axis; 1 for a
+    /// step that slides.
+    pub(super) chain: Vec<(usize, f64)>,
+}
+
+/// Two bodies that are compared.
+#[derive(Debug, Clone)]
+pub(super) struct Pair {
+    pub(super) a: usize,
+    pub(super) b: usize,
+    /// Steps that move one against the other, with how far they bring points of the two together per unit at most.
+    pub(super) closing: Vec<(usize, f64)>,
+    /// Where the two are known to stay apart.
+    pub(super) apart: Option<Apart>,
+}
+
+/// A node of a sphere tree in single precision.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sphere {
+    pub(super) centre: [f32; 3],
+    pub(super) outer: f32,
+    pub(super) inner: f32,
+    /// Position of the first sphere that is not below this one.
+    pub(super) next: u32,
+}
+
+impl LaneRobot {
+    /// Motions of `dofs` from configuration `q` on.
+    ///
+    /// `parts` and `covers` belong to the links; `self_pairs` are the pairs of links to compare, of which those that
+    /// `dofs` do not move against each other are left out.
+    pub fn new(
+        kinematics: &Kinematics,
+        dofs: &[DofIdx],
+        q: &Configuration,
+        parts: &TypedVec<LinkIdx, Arc<ConvexParts>>,
+        covers: &TypedVec<LinkIdx, Arc<SphereCover>>,
+        self_pairs: &[(LinkIdx, LinkIdx)],
+    ) -> Self {
+        let model = kinematics.model();
+        let mut steps: Vec<Step> = Vec::new();
+        let mut carriers: TypedVec<LinkIdx, (usize, Pose)> =
+            model.links().iter().map(|_| (0, Pose::identity())).collect();
+        for &joint in model.topological_order() {
+            let described = &model.joints()[joint];
+            let (frame, frame_from_parent) = carriers[described.parent];
+            carriers[described.child] = match moving(kinematics, dofs, joint) {
+                None => {
+                    let value = kinematics.joint_value(joint, q);
+                    (frame, frame_from_parent * kinematics.parent_from_child(joint, value))
+                }
+                Some((column, factor, offset)) => {
+                    let slides = described.motion == JointMotion::Prismatic;
+                    let parent_from_joint = frame_from_parent * joint_pose(kinematics, joint);
+                    // Turned so that the axis is z; the child is turned back.
+                    let joint_from_axis = z_onto(described.unit_axis());
+                    let pose = parent_from_joint * joint_from_axis;
+                    steps.push(Step::new(frame, column, factor, offset, slides, pose));
+                    (steps.len(), Pose::from_parts(Default::default(), joint_from_axis.inverse()))
+                }
+            };
+        }
+        let mut robot = Self {
+            steps,
+            bodies: Vec::new(),
+            pairs: Vec::new(),
+            spheres: Vec::new(),
+            carriers,
+            rounding: 0.0,
+        };
+        let mut body_of: TypedVec<LinkIdx, Option<usize>> = model.links().iter().map(|_| None).collect();
+        for link in model.links().indices() {
+            let (frame, frame_from_link) = robot.carriers[link];
+            let compared = self_pairs.iter().any(|&(a, b)| a == link || b == link);
+            if !covers[link].nodes().is_empty() && (frame > 0 || compared) {
+                let extents = extents(kinematics, &robot.steps, dofs);
+                let body =
+                    robot.add(Some(link), frame, frame_from_link, &parts[link], &covers[link], &extents);
+                body_of[link] = Some(body);
+            }
+        }
+        for &(a, b) in self_pairs {
+            if let (Some(a), Some(b)) = (body_of[a], body_of[b]) {
+                robot.pairs.extend(robot.pair(a, b));
+            }
+        }
+        let limits = kinematics.model().dofs();
+        let ranges: Vec<(f64, f64)> = dofs.iter().map(|&dof| limits[dof].sampling_range()).collect();
+        for i in 0..robot.pairs.len() {
+            robot.pairs[i].apart = Apart::of(&robot, &robot.pairs[i], parts, &ranges);
+        }
+        robot.rounding = robot.rounding();
+        robot
+    }
+
+    /// Adds a body that moves with a frame; returns its position.
+    pub(super) fn add(
+        &mut self,
+        link: Option<LinkIdx>,
+        frame: usize,
+        frame_from_body: Pose,
+        parts: &ConvexParts,
+        cover: &SphereCover,
+        extents: &[f64],
+    ) -> usize {
+        let first = self.spheres.len();
+        for node in cover.nodes() {
+            let centre = frame_from_body * node.centre;
+            self.spheres.push(Sphere {
+                centre: [centre.x as f32, centre.y as f32, centre.z as f32],
+                outer: node.outer as f32,
+                inner: node.inner as f32,
+                next: first as u32 + node.next,
+            });
+        }
+        let chain = self.chain(frame, &frame_from_body, parts, extents);
+        let spheres = first..self.spheres.len();
+        self.bodies.push(Body { link, frame, frame_from_body, spheres, chain });
+        self.bodies.len() - 1
+    }
+
+    /// How far points of a body are from the axes that move it, at most and in any configuration: no farther than the bones
+    /// between are long.
+    fn chain(
+        &self,
+        frame: usize,
+        frame_from_body: &Pose,
+        parts: &ConvexParts,
+        extents: &[f64],
+    ) -> Vec<(usize, f64)> {
+        let points: Vec<Point3<f64>> = parts.points().map(|p| frame_from_body * p).collect();
+        let mut chain = Vec::new();
+        let mut at = frame;
+        // From the origin of the frame reached so far.
+        let mut reach = points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
+        let mut beside = points.iter().map(|p| p.x.hypot(p.y)).fold(0.0, f64::max);
+        while at > 0 {
+            let step = &self.steps[at - 1];
+            chain.push((at - 1, if step.slides { 1.0 } else { beside }));
+            if step.slides {
+                reach += extents[at - 1];
+            }
+            reach += step.parent_from_joint.translation.vector.norm();
+            beside = reach;
+            at = step.parent;
+        }
+        chain.reverse();
+        chain
+    }
+
+    /// The pair of two bodies; `None` when nothing moves one against the other.
+    pub(super) fn pair(&self, a: usize, b: usize) -> Option<Pair> {
+        let (chain_a, chain_b) = (&self.bodies[a].chain, &self.bodies[b].chain);
+        let only = |own: &[(usize, f64)], other: &[(usize, f64)]| -> Vec<(usize, f64)> {
+            own.iter().copied().filter(|(step, _)| other.iter().all(|(s, _)| s != step)).collect()
+        };
+        let mut closing = only(chain_a, chain_b);
+        closing.extend(only(chain_b, chain_a));
+        (!closing.is_empty()).then_some(Pair { a, b, closing, apart: None })
+    }
+
+    /// A step turns what hangs on it by an angle that is known to about a millionth, and adds about as much by its own
+    /// rounding; each such error moves a point by no more than the length of the arm.
+    fn rounding(&self) -> f64 {
+        const EACH_STEP: f64 = 6e-6;
+        let reach = |body: &Body| body.chain.iter().map(|(_, distance)| *distance).fold(0.0, f64::max);
+        let longest = self.bodies.iter().map(reach).fold(0.0, f64::max);
+        EACH_STEP * (self.steps.len() + 1) as f64 * longest
+    }
+
+    /// Poses of all frames in the root frame, exactly; `values` are those of the degrees of freedom.
+    pub(super) fn poses(&self, values: &[f64], root_from_frames: &mut Vec<Pose>) {
+        root_from_frames.clear();
+        root_from_frames.push(Pose::identity());
+        for step in &self.steps {
+            let value = step.factor * values[step.column] + step.offset;
+            let motion = if step.slides {
+                Pose::translation(0.0, 0.0, value)
+            } else {
+                let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), value);
+                Pose::from_parts(Default::default(), turn)
+            };
+            root_from_frames.push(root_from_frames[step.parent] * step.parent_from_joint * motion);
+        }
+    }
+}
+
+impl Step {
+    fn new(parent: usize, column: usize, factor: f64, offset: f64, slides: bool, pose: Pose) -> Self {
+        let rotation = pose.rotation.to_rotation_matrix();
+        let row = |i: usize| [0, 1, 2].map(|k| snapped(rotation.matrix()[(i, k)]));
+        let shift = pose.translation.vector;
+        Self {
+            parent,
+            column,
+            factor,
+            offset,
+            slides,
+            parent_from_joint: pose,
+            rows: [row(0), row(1), row(2)],
+            shift: [shift.x as f32, shift.y as f32, shift.z as f32],
+        }
+    }
+
+    /// Joint value at the start of a motion, brought near zero when it is an angle, and its change along the motion.
+    pub(super) fn motion(&self, from: &[f64], difference: &[f64]) -> (f64, f64) {
+        let value = self.factor * from[self.column] + self.offset;
+        let value = if self.slides { value } else { value - TAU * (value / TAU).round() };
+        (value, self.factor * difference[self.column])
+    }
+}
+
+/// A coefficient that is zero but for rounding becomes zero, which the kernel skips.
+fn snapped(x: f64) -> f32 {
+    if x.abs() < 1e-9 { 0.0 } else { x as f32 }
+}
+
+/// The column, factor and offset of a joint that the degrees of freedom move.
+fn moving(kinematics: &Kinematics, dofs: &[DofIdx], joint: JointIdx) -> Option<(usize, f64, f64)> {
+    let (dof, factor, offset) = match kinematics.model().joints()[joint].drive {
+        Drive::Fixed => return None,
+        Drive::Dof(dof) => (dof, 1.0, 0.0),
+        Drive::Mimic { dof, multiplier, offset } => (dof, multiplier, offset),
+    };
+    let column = dofs.iter().position(|&own| own == dof)?;
+    let zero = kinematics.calibration().joint(joint).map_or(0.0, |c| c.value_offset);
+    Some((column, factor, offset + zero))
+}
+
+fn joint_pose(kinematics: &Kinematics, joint: JointIdx) -> Pose {
+    let described = kinematics.model().joints()[joint].parent_from_joint();
+    match kinematics.calibration().joint(joint) {
+        None => *described,
+        Some(c) => described * c.joint_from_corrected,
+    }
+}
+
+/// For each step, how far it slides at most.
+pub(super) fn extents(kinematics: &Kinematics, steps: &[Step], dofs: &[DofIdx]) -> Vec<f64> {
+    let limits = kinematics.model().dofs();
+    let extent = |step: &Step| {
+        let dof = &limits[dofs[step.column]];
+        let at = |value: f64| (step.factor * value + step.offset).abs();
+        if step.slides { at(dof.lower).max(at(dof.upper)) } else { 0.0 }
+    };
+    steps.iter().map(extent).collect()
+}
+
+/// A rotation that takes the z axis onto `axis`.
+fn z_onto(axis: &Unit<Vector3<f64>>) -> UnitQuaternion<f64> {
+    let rotation = Rotation3::rotation_between(&Vector3::z(), axis)
+        .unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
+    UnitQuaternion::from_rotation_matrix(&rotation)
+}
+
+/// Numbers by which contacts are reported: links first, then bodies of the scene.
+pub(super) fn number_of(link: LinkIdx) -> usize {
+    link.index()
+}

@@ -1,0 +1,169 @@
+//! The lane checker against the scalar one: both are asked about the same motions.
+
+use std::sync::Arc;
+
+use nalgebra::{Point3, Translation3};
+use robotc_core::geom::{ConvexParts, CoverOptions, DecomposeOptions, SphereCover, parts_of};
+use robotc_core::model::{Geometry, Origin, Shape, TriMesh};
+use robotc_core::rng::Rng;
+use robotc_core::{BodyIdx, Configuration, Kinematics, LinkIdx, Pose, Robot, Seed, TypedVec, World};
+
+use super::{LaneChecker, LaneRobot, Width};
+use crate::certify::certify_path;
+use crate::edge::EdgeChecker;
+use crate::scene::{RobotChecker, Rules, Scene};
+use crate::space::{Axis, Space};
+use crate::testbed;
+
+struct Bench {
+    robot: Robot,
+    world: World,
+    scene: Scene,
+    lanes: LaneRobot,
+    space: Space,
+}
+
+fn solid(shape: Shape) -> Arc<Vec<Geometry>> {
+    Arc::new(vec![Geometry { origin: Origin::default(), shape, colour: None }])
+}
+
+fn wedge() -> Shape {
+    let vertices = [[0.0, 0.0, 0.0], [0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.3]].map(Point3::from);
+    let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let mesh = Arc::new(TriMesh { vertices: vertices.to_vec(), faces });
+    Shape::Mesh { mesh, uri: "wedge".into() }
+}
+
+type Covers = TypedVec<LinkIdx, Arc<SphereCover>>;
+
+/// Spheres around the links, the same with and without a rail.
+fn covers() -> Covers {
+    let model = testbed::model(false);
+    let cover = |collisions: &[Geometry]| {
+        let parts = parts_of(collisions, &DecomposeOptions::default()).unwrap();
+        Arc::new(SphereCover::of(&parts, &CoverOptions { overshoot: 0.1 }))
+    };
+    model.links().iter().map(|link| cover(&link.collisions)).collect()
+}
+
+/// The test arm among solids of all kinds.
+fn bench(rail: bool, covers: &Covers, rng: &mut Rng) -> Bench {
+    let robot = testbed::robot(rail);
+    let model = robot.model.clone();
+    let kinematics = Kinematics::new(model.clone());
+    let q = testbed::rest(&robot);
+    let mut world = World::new(kinematics.clone(), Pose::translation(0.1, -0.2, 0.05), q);
+    let options = DecomposeOptions::default();
+    let mut bodies: TypedVec<BodyIdx, Arc<ConvexParts>> = TypedVec::new();
+    let shapes = [
+        Shape::Box { size: [0.3, 0.2, 0.1] },
+        Shape::Sphere { radius: 0.08 },
+        Shape::Cylinder { radius: 0.05, length: 0.3 },
+        Shape::Capsule { radius: 0.04, length: 0.2 },
+        wedge(),
+        Shape::Box { size: [0.05, 0.4, 0.4] },
+    ];
+    for (i, shape) in shapes.into_iter().enumerate() {
+        let geometry = solid(shape);
+        let at = Translation3::new(rng.range(-0.8, 0.8), rng.range(-0.8, 0.8), rng.range(0.2, 0.9));
+        let turn = if i % 2 == 0 { rng.rotation() } else { Pose::identity().rotation };
+        world.add(&format!("body {i}"), geometry.clone(), Pose::from_parts(at, turn));
+        bodies.push(Arc::new(parts_of(&geometry, &options).unwrap()));
+    }
+    let parts: TypedVec<LinkIdx, Arc<ConvexParts>> =
+        model.links().iter().map(|l| Arc::new(parts_of(&l.collisions, &options).unwrap())).collect();
+    let links: Vec<LinkIdx> = model.links().indices().collect();
+    let mut pairs = Vec::new();
+    for (i, &a) in links.iter().enumerate() {
+        let others = links[i + 1..].iter().map(|&b| (a, b));
+        pairs.extend(others.filter(|pair| !robot.ignored_pairs.contains(pair)));
+    }
+    let dofs = robot.arms[0].dofs.clone();
+    let lanes = LaneRobot::new(&kinematics, &dofs, world.q(), &parts, covers, &pairs);
+    let scene = Scene::new(&world, &parts, &bodies, pairs);
+    let axis = |&dof| Axis::bounded(model.dofs()[dof].lower, model.dofs()[dof].upper);
+    let space = Space::new(dofs.iter().map(axis).collect());
+    Bench { robot, world, scene, lanes, space }
+}
+
+impl Bench {
+    fn exact(&self) -> RobotChecker<'_> {
+        let (dofs, q): (_, &Configuration) = (&self.robot.arms[0].dofs, self.world.q());
+        RobotChecker::new(&self.scene, &self.space, dofs, q, Rules::default(), 0.01)
+    }
+
+    fn lanes(&self, width: Width) -> LaneChecker<'_> {
+        LaneChecker::new(&self.lanes, &self.scene, &self.space, 0.0, width)
+    }
+}
+
+#[test]
+fn states_are_as_exact_geometry_says() {
+    let (covers, mut rng) = (covers(), Seed::new(21).rng());
+    let (mut free, mut touching) = (0, 0);
+    for trial in 0..4 {
+        let bench = bench(trial % 2 == 0, &covers, &mut rng);
+        let (mut exact, mut lanes) = (bench.exact(), bench.lanes(Width::widest()));
+        for _ in 0..150 {
+            let q = bench.space.sample(&mut rng);
+            let (expected, found) = (exact.state(&q), lanes.state(&q));
+            assert_eq!(expected.is_ok(), found.is_ok(), "{q:?}: {expected:?} {found:?}");
+            if found.is_ok() { free += 1 } else { touching += 1 }
+        }
+    }
+    assert!(free > 150 && touching > 150, "{free} {touching}");
+}
+
+#[test]
+fn free_edges_are_free_throughout_and_blocked_ones_are_not() {
+    let (covers, mut rng) = (covers(), Seed::new(22).rng());
+    let (mut free, mut blocked) = (0, 0);
+    for trial in 0..5 {
+        let bench = bench(trial % 2 == 0, &covers, &mut rng);
+        let mut exact = bench.exact();
+        let mut lanes = bench.lanes(Width::widest());
+        for _ in 0..40 {
+            let from = bench.space.sample(&mut rng);
+            if lanes.state(&from).is_err() {
+                continue;
+            }
+            let to = bench.space.sample_near(&from, rng.range(0.05, 2.0), &mut rng);
+            match lanes.edge(&from, &to) {
+                Ok(()) => {
+                    free += 1;
+                    for i in 0..=200 {
+                        let q = bench.space.interpolate(&from, &to, f64::from(i) / 200.0);
+                        assert!(exact.state(&q).is_ok(), "{from:?} {to:?} {i}");
+                    }
+                }
+                Err(found) => {
+                    blocked += 1;
+                    let q = bench.space.interpolate(&from, &to, found.fraction);
+                    // Where it is blocked something touches, or nearly so.
+                    let room = exact.state(&q).unwrap_or(0.0);
+                    assert!(room < 1e-3, "{from:?} {to:?} {found:?} {room}");
+                    let path = [from.clone(), to.clone()];
+                    assert!(certify_path(&mut exact, &path, 1e-5).is_err());
+                }
+            }
+        }
+    }
+    assert!(free > 30 && blocked > 30, "{free} {blocked}");
+}
+
+#[test]
+fn every_number_of_lanes_gives_the_same_answers() {
+    let mut rng = Seed::new(23).rng();
+    let bench = bench(true, &covers(), &mut rng);
+    let mut checkers: Vec<_> = Width::all().into_iter().map(|width| bench.lanes(width)).collect();
+    assert!(Width::all().windows(2).all(|w| w[0].lanes() < w[1].lanes()));
+    let mut free = 0;
+    for _ in 0..200 {
+        let from = bench.space.sample(&mut rng);
+        let to = bench.space.sample_near(&from, rng.range(0.05, 2.0), &mut rng);
+        let answers: Vec<bool> = checkers.iter_mut().map(|c| c.edge(&from, &to).is_ok()).collect();
+        assert!(answers.windows(2).all(|w| w[0] == w[1]), "{from:?} {to:?} {answers:?}");
+        free += usize::from(answers[0]);
+    }
+    assert!(free > 20, "{free}");
+}

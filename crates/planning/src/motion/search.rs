@@ -1,0 +1,231 @@
+//! RRT-Connect with dynamic domains and restarts.
+//!
+//! Two trees grow in turn, the smaller one next, each step followed by an attempt to connect (Kuffner and LaValle,
+//! "RRT-Connect", 2000). A node from which a step was blocked is grown only by samples that are near (Jaillet, Yershova,
+//! LaValle and Simeon, "Adaptive tuning of the sampling domain for dynamic-domain RRTs", 2005). Search times have a heavy
+//! tail, so that searches start over after a number of iterations that follows Luby's sequence (Luby, Sinclair and
+//! Zuckerman, "Optimal speedup of Las Vegas algorithms", 1993).
+
+use robotc_core::Seed;
+use robotc_core::rng::Rng;
+
+use super::tree::Tree;
+use super::{MotionFailure, MotionPlan};
+use crate::budget::Budget;
+use crate::edge::{EdgeChecker, Patience};
+use crate::space::Space;
+
+/// Parameters of the search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SearchOptions {
+    /// Longest edge of the trees, as a fraction of the diameter of the space.
+    pub step: f64,
+    /// Share of samples drawn near a random node rather than anywhere.
+    pub local: f64,
+    /// Radius of the domain of a node after its first blocked step, in longest edges.
+    pub domain: f64,
+    /// What a blocked step shrinks a domain by, and a free one widens it by, as a share.
+    pub adaption: f64,
+    /// Iterations of the shortest run; others are 1, 1, 2, 1, 1, 2, 4, ... times as long.
+    pub restart: u32,
+    /// Iterations of the first run in which motions that pass narrowly count as blocked, unless they begin or end at the
+    /// start or the goal.
+    pub hasty: u32,
+    /// Iterations, over all runs, after which the search gives up.
+    pub max_iterations: u32,
+}
+
+impl Default for SearchOptions {
+    fn default() -> Self {
+        Self {
+            step: 0.1,
+            local: 0.2,
+            domain: 3.0,
+            adaption: 0.05,
+            restart: 2000,
+            hasty: 100,
+            max_iterations: 200_000,
+        }
+    }
+}
+
+/// How far a tree got towards a state.
+enum Reach {
+    /// To the state itself.
+    There(usize),
+    /// To a node on the way.
+    Short(usize),
+    /// Not a single step.
+    Blocked,
+}
+
+pub(super) fn run<C: EdgeChecker + ?Sized>(
+    checker: &mut C,
+    start: &[f64],
+    goal: &[f64],
+    options: &SearchOptions,
+    budget: &Budget<'_>,
+    seed: Seed,
+) -> Result<MotionPlan, MotionFailure> {
+    if checker.edge(start, goal).is_ok() {
+        return Ok(MotionPlan { path: vec![start.to_vec(), goal.to_vec()], iterations: 0 });
+    }
+    let mut search = Search {
+        step: options.step * checker.space().diameter(),
+        from_start: Tree::default(),
+        from_goal: Tree::default(),
+        sample: start.to_vec(),
+        next: start.to_vec(),
+        options,
+    };
+    let mut iterations = 0;
+    for run in 0.. {
+        search.from_start.plant(start);
+        search.from_goal.plant(goal);
+        let mut rng = seed.at(run).rng();
+        let length = options.restart.saturating_mul(luby(run + 1)).max(1);
+        for iteration in 0..length {
+            budget.check().map_err(|interrupt| MotionFailure::Interrupted(interrupt, iterations))?;
+            if iterations >= options.max_iterations {
+                return Err(MotionFailure::Iterations(iterations));
+            }
+            iterations += 1;
+            let hasty = run == 0 && iteration < options.hasty;
+            if let Some(path) = search.iterate(checker, hasty, &mut rng) {
+                return Ok(MotionPlan { path, iterations });
+            }
+        }
+    }
+    unreachable!("runs end by their iterations")
+}
+
+/// The n-th number, from 1 on, of Luby's sequence 1, 1, 2, 1, 1, 2, 4, ...
+fn luby(n: u64) -> u32 {
+    let mut n = n;
+    loop {
+        let bits = u64::BITS - n.leading_zeros();
+        if n == (1 << bits) - 1 {
+            return 1 << (bits - 1);
+        }
+        n -= (1 << (bits - 1)) - 1;
+    }
+}
+
+struct Search<'a> {
+    options: &'a SearchOptions,
+    step: f64,
+    from_start: Tree,
+    from_goal: Tree,
+    sample: Vec<f64>,
+    next: Vec<f64>,
+}
+
+impl Search<'_> {
+    /// Grows the smaller tree by a step and tries to connect; a path when the trees meet.
+    fn iterate<C: EdgeChecker + ?Sized>(
+        &mut self,
+        checker: &mut C,
+        hasty: bool,
+        rng: &mut Rng,
+    ) -> Option<Vec<Vec<f64>>> {
+        let Self { options, step, from_start, from_goal, sample, next } = self;
+        let forward = from_start.len() <= from_goal.len();
+        let (grown, other) = if forward { (from_start, from_goal) } else { (from_goal, from_start) };
+        draw(checker.space(), grown, options.local, *step, sample, rng);
+        let (near, distance) = grown.nearest(checker.space(), sample);
+        if distance > grown.domain(near) {
+            return None;
+        }
+        let new = match extend(checker, grown, near, distance, sample, *step, hasty, next) {
+            Reach::There(node) | Reach::Short(node) => {
+                grown.set_domain(near, grown.domain(near) * (1.0 + options.adaption));
+                node
+            }
+            Reach::Blocked => {
+                let radius = match grown.domain(near) {
+                    f64::INFINITY => options.domain * *step,
+                    radius => (radius * (1.0 - options.adaption)).max(0.5 * *step),
+                };
+                grown.set_domain(near, radius);
+                return None;
+            }
+        };
+        sample.copy_from_slice(grown.state(new));
+        let (mut at, mut distance) = other.nearest(checker.space(), sample);
+        loop {
+            match extend(checker, other, at, distance, sample, *step, hasty, next) {
+                Reach::Short(node) => (at, distance) = (node, distance - *step),
+                Reach::Blocked => return None,
+                Reach::There(met) => {
+                    let (mut path, rest) = (grown.to_root(new), other.to_root(met));
+                    path.reverse();
+                    // Both nodes are the same state; it is kept once.
+                    path.extend(rest.into_iter().skip(1));
+                    if !forward {
+                        path.reverse();
+                    }
+                    return Some(path);
+                }
+            }
+        }
+    }
+}
+
+fn draw(space: &Space, tree: &Tree, local: f64, step: f64, sample: &mut [f64], rng: &mut Rng) {
+    let near = rng.unit() < local;
+    if near {
+        let centre = tree.state(rng.below(tree.len()));
+        let distance = step * rng.unit();
+        let mut norm = 0.0;
+        for x in sample.iter_mut() {
+            *x = rng.normal();
+            norm += *x * *x;
+        }
+        let scale = distance / norm.sqrt().max(f64::MIN_POSITIVE);
+        for ((x, c), axis) in sample.iter_mut().zip(centre).zip(space.axes()) {
+            *x = c + scale * *x / axis.weight;
+        }
+        space.clamp(sample);
+    } else {
+        space.sample_into(sample, rng);
+    }
+}
+
+/// A step from a node towards a state that is `distance` away.
+fn extend<C: EdgeChecker + ?Sized>(
+    checker: &mut C,
+    tree: &mut Tree,
+    node: usize,
+    distance: f64,
+    towards: &[f64],
+    step: f64,
+    hasty: bool,
+    next: &mut Vec<f64>,
+) -> Reach {
+    let arrives = distance <= step;
+    next.clear();
+    if arrives {
+        next.extend_from_slice(towards);
+    } else {
+        checker.space().interpolate_into(tree.state(node), towards, step / distance, next);
+    }
+    // Start and goal are often in narrow places, and must be left.
+    let patience = if hasty && node != 0 { Patience::Hasty } else { Patience::Thorough };
+    checker.set_patience(patience);
+    if checker.edge(tree.state(node), next).is_err() {
+        return Reach::Blocked;
+    }
+    let new = tree.push(node, next);
+    if arrives { Reach::There(new) } else { Reach::Short(new) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_follow_lubys_sequence() {
+        let first: Vec<u32> = (1..=15).map(luby).collect();
+        assert_eq!(first, [1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8]);
+    }
+}
