@@ -47,7 +47,7 @@ pub use explore::{ExploreFailure, ExploreOptions, ExploreSolution, FixedMotion, 
 pub use goal::{FixedGoals, GoalDraw, GoalSampler};
 pub use grasp::{Contact, Grasp, GraspSet, Steadiness};
 pub use jitter::{JitterFailure, JitterOptions, Jittered, jitter};
-pub use lanes::{LaneChecker, LaneRobot};
+pub use lanes::{LaneChecker, LaneMemory, LaneRobot};
 pub use mechanism::{Mechanism, MechanismMotion};
 pub use motion::{MotionFailure, MotionOptions, MotionPlan, plan_motion};
 pub use problem::{PathPlanner, PlanningProblem, Registry, solve};

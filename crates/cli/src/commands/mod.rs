@@ -1,5 +1,6 @@
 //! One file per command; one line each in [`Command`] and [`run`].
 
+mod bench;
 mod build;
 mod check;
 mod compile;
@@ -20,6 +21,7 @@ use crate::output::Outcome;
 
 #[derive(Subcommand)]
 pub(crate) enum Command {
+    Bench(bench::Bench),
     Build(build::Build),
     Check(check::Check),
     Compile(compile::Compile),
@@ -38,6 +40,7 @@ pub(crate) enum Command {
 /// Does what the command line asks for.
 pub(crate) fn run(command: Command) -> Outcome {
     match command {
+        Command::Bench(args) => bench::run(&args),
         Command::Build(args) => build::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Compile(args) => compile::run(&args),

@@ -6,6 +6,7 @@
 
 mod aabb;
 mod bvh;
+mod climb;
 mod decompose;
 mod gjk;
 mod hull;

@@ -1,10 +1,11 @@
 //! One convex polytope.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::{Point3, Unit, Vector3};
 use thiserror::Error;
 
+use super::climb::Climb;
 use super::hull::{Hull, HullError, convex_hull, facet_normal, is_closed};
 use super::{Aabb, MeshIndex};
 use crate::Pose;
@@ -60,6 +61,8 @@ struct Data {
     centre: Point3<f64>,
     radius: f64,
     volume: f64,
+    /// For parts with many corners, made when first asked for.
+    climb: OnceLock<Climb>,
 }
 
 /// A convex polytope with volume: points, outward triangles and face planes, in metres, in the frame of whatever
@@ -73,6 +76,9 @@ impl PartialEq for ConvexPart {
             || (self.0.points == other.0.points && self.0.triangles == other.0.triangles)
     }
 }
+
+/// With more corners than this, support points are found by climbing along edges rather than by looking at all.
+const MANY_CORNERS: usize = 64;
 
 /// Triangles whose normals differ by less than this (sine of the angle) count as one face.
 const COPLANAR: f64 = 1e-7;
@@ -129,7 +135,8 @@ impl ConvexPart {
         let normals = face_normals(&points, &triangles);
         let planes = face_planes(&points, &normals);
         let edges = sharp_edges(&triangles, &normals);
-        Self(Arc::new(Data { points, triangles, planes, edges, bounds, centre, radius, volume }))
+        let climb = OnceLock::new();
+        Self(Arc::new(Data { points, triangles, planes, edges, bounds, centre, radius, volume, climb }))
     }
 
     /// Corners, each once.
@@ -172,9 +179,13 @@ impl ConvexPart {
         self.0.planes.iter().map(|plane| plane.height(point)).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The corner farthest along `direction`.
+    /// The corner farthest along `direction`, to within rounding.
     pub fn support(&self, direction: &Vector3<f64>) -> &Point3<f64> {
         let points = &self.0.points;
+        if points.len() > MANY_CORNERS {
+            let climb = self.0.climb.get_or_init(|| Climb::new(points, &self.0.triangles));
+            return &points[climb.farthest(points, direction)];
+        }
         let mut best = 0;
         let mut best_height = f64::NEG_INFINITY;
         for (i, p) in points.iter().enumerate() {

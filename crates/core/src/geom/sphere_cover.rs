@@ -171,8 +171,8 @@ mod tests {
                 }
             }
             let radius = parts.iter().map(|p| p.bounding_sphere().1).fold(0.0, f64::max);
-            // Of a part with many faces only some are looked at, which costs a little.
-            assert!(cover.overshoot() <= 0.065 * radius + 1e-9, "{} of {radius}", cover.overshoot());
+            // A ball whose centre is outside counts twice; looking at some of many faces only costs a little more.
+            assert!(cover.overshoot() <= 2.0 * 0.065 * radius + 1e-9, "{} of {radius}", cover.overshoot());
             for leaf in cover.leaves() {
                 let p = leaf.centre + rng.direction().into_inner() * (leaf.inner * 0.999);
                 assert!(leaf.inner == 0.0 || parts.contains(&p));

@@ -4,11 +4,13 @@
 //! motion planning datasets", 2022). A [`BenchRobot`] is what is computed once for a robot, [`run`] plans every problem
 //! and times the whole calls, and a [`Report`] says what came of it.
 
+mod checks;
 mod problems;
 mod report;
 mod robot;
 mod run;
 
+pub use checks::{CheckRates, measure_checks};
 pub use problems::{Problem, ProblemSet, ProblemSetError};
 pub use report::{Report, Row, SceneSummary, Summary};
 pub use robot::{BenchError, BenchRobot, Stage};

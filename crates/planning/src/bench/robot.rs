@@ -64,7 +64,7 @@ pub struct Stage {
     /// Their convex parts.
     pub scene: Scene,
     /// The robot with the joints that are not planned for where they are.
-    pub lanes: LaneRobot,
+    pub lanes: Arc<LaneRobot>,
 }
 
 impl BenchRobot {
@@ -96,8 +96,8 @@ impl BenchRobot {
     }
 
     /// The robot among the obstacles of a problem. Joints that are not planned for, and that the model has, take the
-    /// values of the problem.
-    pub fn stage(&self, problem: &Problem) -> Result<Stage, BenchError> {
+    /// values of the problem; `lanes` is the robot prepared with these joints there, if it is known.
+    pub fn stage(&self, problem: &Problem, lanes: Option<Arc<LaneRobot>>) -> Result<Stage, BenchError> {
         let model = self.kinematics.model();
         let mut q = Configuration::neutral(model);
         for (name, value) in &problem.other_joints {
@@ -115,14 +115,10 @@ impl BenchRobot {
             bodies.push(Arc::new(parts));
         }
         let scene = Scene::new(&world, &self.links, &bodies, self.self_pairs.clone());
-        let lanes = LaneRobot::new(
-            &self.kinematics,
-            &self.dofs,
-            world.q(),
-            &self.links,
-            &self.covers,
-            &self.self_pairs,
-        );
+        let lanes = lanes.unwrap_or_else(|| {
+            let (q, kinematics) = (world.q(), &self.kinematics);
+            LaneRobot::new(kinematics, &self.dofs, q, &self.links, &self.covers, &self.self_pairs).into()
+        });
         Ok(Stage { world, scene, lanes })
     }
 }

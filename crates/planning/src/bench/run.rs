@@ -1,5 +1,7 @@
 //! Planning every problem of a set.
 
+use std::sync::Arc;
+
 use robotc_core::Seed;
 
 use super::problems::{Problem, ProblemSet};
@@ -8,7 +10,7 @@ use super::robot::{BenchError, BenchRobot, Stage};
 use crate::budget::Budget;
 use crate::certify::certify_path;
 use crate::edge::EdgeChecker;
-use crate::lanes::{LaneChecker, LaneStatistics, Width};
+use crate::lanes::{LaneChecker, LaneMemory, LaneRobot, LaneStatistics, Width};
 use crate::motion::{MotionOptions, find_motion, shorten_motion};
 use crate::scene::{RobotChecker, Rules};
 
@@ -42,9 +44,18 @@ pub fn run(
     progress: &mut dyn FnMut(&Row),
 ) -> Result<Report, BenchError> {
     let mut rows = Vec::with_capacity(set.problems.len());
+    let mut memory = LaneMemory::default();
+    let mut lanes: Option<Arc<LaneRobot>> = None;
+    let mut others: Option<&[(String, f64)]> = None;
     for problem in &set.problems {
-        let stage = robot.stage(problem)?;
-        let row = plan_problem(robot, &stage, &within_limits(robot, problem), options, now);
+        // The robot is prepared again only when joints that are not planned for have moved.
+        if others != Some(&problem.other_joints) {
+            lanes = None;
+            others = Some(&problem.other_joints);
+        }
+        let stage = robot.stage(problem, lanes.take())?;
+        lanes = Some(stage.lanes.clone());
+        let row = plan_problem(robot, &stage, &within_limits(robot, problem), options, now, &mut memory);
         progress(&row);
         rows.push(row);
     }
@@ -88,6 +99,7 @@ fn plan_problem(
     problem: &Problem,
     options: &BenchOptions,
     now: &dyn Fn() -> f64,
+    memory: &mut LaneMemory,
 ) -> Row {
     let mut exact = checker(robot, stage);
     let mut wrong = |name: &str, q: &[f64]| {
@@ -101,7 +113,7 @@ fn plan_problem(
     if valid {
         for seed in 0..options.seeds.max(1) {
             let seed = Seed::new(u64::from(seed));
-            let attempt = attempt(robot, stage, problem, options, seed, now);
+            let attempt = attempt(robot, stage, problem, options, seed, now, memory);
             certified &= attempt
                 .found
                 .as_ref()
@@ -135,7 +147,8 @@ fn plan_problem(
     }
 }
 
-fn checker<'a>(robot: &'a BenchRobot, stage: &'a Stage) -> RobotChecker<'a> {
+/// The scalar checker with exact geometry.
+pub(super) fn checker<'a>(robot: &'a BenchRobot, stage: &'a Stage) -> RobotChecker<'a> {
     RobotChecker::new(&stage.scene, &robot.space, &robot.dofs, stage.world.q(), Rules::default(), RESOLUTION)
 }
 
@@ -149,10 +162,11 @@ fn attempt(
     options: &BenchOptions,
     seed: Seed,
     now: &dyn Fn() -> f64,
+    memory: &mut LaneMemory,
 ) -> Attempt {
     let start = now();
     let micros = || (now() - start) * 1e6;
-    let mut checker = LaneChecker::new(&stage.lanes, &stage.scene, &robot.space, 0.0, options.width);
+    let mut checker = LaneChecker::new(&stage.lanes, &stage.scene, &robot.space, 0.0, options.width, memory);
     let (budget, motion) = (Budget::unlimited(), &options.motion);
     let (from, to) = (&problem.start, &problem.goal);
     let found = find_motion(&mut checker, from, to, &motion.search, &budget, seed.split("search"));

@@ -30,7 +30,7 @@ pub struct LaneChecker<'a> {
     near: Vec<Vec<(u32, f32)>>,
     margin: f64,
     patience: Patience,
-    work: Work,
+    work: &'a mut LaneMemory,
     statistics: LaneStatistics,
 }
 
@@ -45,9 +45,9 @@ pub struct LaneStatistics {
     pub distances: u64,
 }
 
-/// Memory kept between calls.
-#[derive(Default)]
-struct Work {
+/// Memory of a checker. It grows with use; kept from one checker to the next, nothing is allocated any more.
+#[derive(Debug, Default)]
+pub struct LaneMemory {
     motion: Motion,
     scratch: Scratch,
     /// Stretches of the edge still to be looked at: middle and half length.
@@ -56,8 +56,11 @@ struct Work {
     gaps: Vec<(f32, f32, Close)>,
     difference: Vec<f64>,
     values: Vec<f64>,
+    /// Where the frames are at `values`.
     frames: Vec<Pose>,
     pieces: Vec<(f64, f64)>,
+    /// Stretches of the edge in which two things were proven apart: first, last, which.
+    proven: Vec<(f64, f64, Close)>,
 }
 
 /// Stretches of an edge are a multiple of this, so that their places do not depend on the number of lanes.
@@ -67,7 +70,10 @@ const STRETCHES: usize = MOST_LANES;
 const LONGEST: f64 = 1.0 / 16.0;
 
 /// Stretches in which nothing moves farther than this, in metres, are left to the convex parts.
-const FINE: f64 = 4e-3;
+const FINE: f64 = 8e-3;
+
+/// Distances are found up to this many times what a stretch needs: the stretches beside it then need none.
+const WIDE: f64 = 4.0;
 
 /// Bodies this close to each other count as touching, metres: conservative advancement would not get past them.
 const TOUCH: f64 = 2e-5;
@@ -78,7 +84,14 @@ const MOST_STRETCHES: usize = 8192;
 impl<'a> LaneChecker<'a> {
     /// Motions of `robot`, whose degrees of freedom are the coordinates of `space`, among the bodies of `scene`. Robot and
     /// bodies stay `margin` metres apart; links may come closer to each other.
-    pub fn new(robot: &'a LaneRobot, scene: &'a Scene, space: &'a Space, margin: f64, width: Width) -> Self {
+    pub fn new(
+        robot: &'a LaneRobot,
+        scene: &'a Scene,
+        space: &'a Space,
+        margin: f64,
+        width: Width,
+        work: &'a mut LaneMemory,
+    ) -> Self {
         let mut obstacles = Vec::new();
         let mut owners = Vec::new();
         let root_from_world = scene.world_from_robot().inverse();
@@ -94,7 +107,7 @@ impl<'a> LaneChecker<'a> {
             obstacles.extend(solids);
         }
         let near = near(robot, &obstacles, margin);
-        let (work, statistics) = (Work::default(), LaneStatistics::default());
+        let statistics = LaneStatistics::default();
         Self {
             robot,
             scene,
@@ -123,7 +136,7 @@ impl<'a> LaneChecker<'a> {
         let pass = Pass {
             robot: self.robot,
             around,
-            work: &mut self.work,
+            work: &mut *self.work,
             stretches: &mut self.statistics.stretches,
         };
         if let Some((fraction, close)) = self.width.dispatch(pass) {
@@ -147,9 +160,17 @@ impl<'a> LaneChecker<'a> {
         pieces.push((middle, half));
         let speed = self.speed(close);
         while let Some((middle, half)) = pieces.pop() {
-            let gap = self.gap(from, middle, half * speed, close);
+            let inside = |&(first, last, of): &(f64, f64, Close)| {
+                of == close && first <= middle - half && middle + half <= last
+            };
+            if self.work.proven.iter().any(inside) {
+                continue;
+            }
+            let gap = self.gap(from, middle, WIDE * half * speed, close);
             self.statistics.distances += 1;
+            let known = gap.min(WIDE * half * speed) / speed;
             if gap > half * speed {
+                self.work.proven.push((middle - known, middle + known, close));
                 continue;
             }
             if gap <= TOUCH {
@@ -158,7 +179,6 @@ impl<'a> LaneChecker<'a> {
                 return blocked(middle, by);
             }
             // What is known of the middle of this stretch leaves two pieces of it open.
-            let known = gap / speed;
             let rest = 0.5 * (half - known);
             for side in [-1.0, 1.0] {
                 pieces.push((middle + side * (known + rest), rest));
@@ -182,10 +202,14 @@ impl<'a> LaneChecker<'a> {
     /// The distance of two things at a fraction of the motion, less the margin; infinite when it is more than `far`.
     fn gap(&mut self, from: &[f64], fraction: f64, far: f64, close: Close) -> f64 {
         let robot = self.robot;
-        let Work { values, difference, frames, .. } = &mut self.work;
-        values.clear();
-        values.extend(from.iter().zip(difference.iter()).map(|(a, d)| a + fraction * d));
-        robot.poses(values, frames);
+        let LaneMemory { values, difference, frames, .. } = &mut *self.work;
+        // Often the next question is about the same state.
+        let state = || from.iter().zip(difference.iter()).map(|(a, d)| a + fraction * d);
+        if frames.is_empty() || !state().eq(values.iter().copied()) {
+            values.clear();
+            values.extend(state());
+            robot.poses(values, frames);
+        }
         let scene = self.scene;
         let link = |body: usize| {
             let body = &robot.bodies[body];
@@ -260,7 +284,7 @@ fn near(robot: &LaneRobot, obstacles: &[Obstacle], margin: f64) -> Vec<Vec<(u32,
     robot.bodies.iter().map(reach_of).collect()
 }
 
-impl Work {
+impl LaneMemory {
     /// Numbers of the motion by `difference` from `from`, and its first stretches.
     fn prepare(&mut self, robot: &LaneRobot, from: &[f64], stretches: usize) {
         let Motion { steps, bends, pairs, .. } = &mut self.motion;
@@ -301,6 +325,9 @@ impl Work {
         let fastest = robot.bodies.iter().map(speed).fold(0.0_f64, f64::max);
         self.motion.halvable = (FINE / fastest.max(FINE)) as f32;
         self.gaps.clear();
+        self.proven.clear();
+        // Another robot may have used this memory.
+        self.frames.clear();
         self.queue.clear();
         let half = 0.5 / stretches as f32;
         self.queue.extend((0..stretches).map(|i| ((2 * i + 1) as f32 * half, half * (1.0 + 1e-6))));
@@ -317,7 +344,7 @@ impl Work {
 struct Pass<'a> {
     robot: &'a LaneRobot,
     around: Around<'a>,
-    work: &'a mut Work,
+    work: &'a mut LaneMemory,
     stretches: &'a mut u64,
 }
 
@@ -327,7 +354,7 @@ impl WithSimd for Pass<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let Work { motion, scratch, queue, gaps, .. } = self.work;
+        let LaneMemory { motion, scratch, queue, gaps, .. } = self.work;
         let lanes = S::F32_LANES;
         let first = queue.len();
         let mut next = 0;

@@ -389,13 +389,7 @@ impl<S: Simd> Kernel<'_, S> {
 
 /// A mixture of three vectors. Factors of zero are frequent.
 #[inline(always)]
-fn mix<S: Simd>(
-    x: &Vector<S>,
-    y: &Vector<S>,
-    z: &Vector<S>,
-    factors: [f32; 3],
-    zero: Lanes<S>,
-) -> Vector<S> {
+fn mix<S: Simd>(x: &Vector<S>, y: &Vector<S>, z: &Vector<S>, factors: [f32; 3], zero: Lanes<S>) -> Vector<S> {
     let mut sum = [zero; 3];
     if factors[0] != 0.0 {
         sum = scaled(x, factors[0]);

@@ -18,6 +18,6 @@ mod obstacle;
 mod tests;
 mod width;
 
-pub use checker::{LaneChecker, LaneStatistics};
+pub use checker::{LaneChecker, LaneMemory, LaneStatistics};
 pub use mechanism::LaneRobot;
 pub use width::Width;

@@ -36,10 +36,10 @@ enum Solid {
     Planes(Vec<[f32; 4]>),
 }
 
-/// The exact shapes of round solids are polytopes around them; by how much these stand out, as a fraction of the radius.
 /// Tilts that move no point of a solid by more than rounding does, radians.
 const LEVEL: f32 = 1e-7;
 
+/// The exact shapes of round solids are polytopes around them; by how much these stand out, as a fraction of the radius.
 const SPHERE_PAD: f64 = 0.06;
 const CYLINDER_PAD: f64 = 0.02;
 const CAPSULE_PAD: f64 = 0.15;
@@ -113,7 +113,8 @@ impl Obstacle {
         match &self.solid {
             Solid::Sphere(_) => (zero, zero),
             Solid::Box(half) => {
-                let (x, y, z) = (beyond(x, splat(half[0])), beyond(y, splat(half[1])), beyond(z, splat(half[2])));
+                let (x, y, z) =
+                    (beyond(x, splat(half[0])), beyond(y, splat(half[1])), beyond(z, splat(half[2])));
                 let squared = x * x + y * y + z * z;
                 (squared, squared)
             }

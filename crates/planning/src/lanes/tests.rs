@@ -8,7 +8,7 @@ use robotc_core::model::{Geometry, Origin, Shape, TriMesh};
 use robotc_core::rng::Rng;
 use robotc_core::{BodyIdx, Configuration, Kinematics, LinkIdx, Pose, Robot, Seed, TypedVec, World};
 
-use super::{LaneChecker, LaneRobot, Width};
+use super::{LaneChecker, LaneMemory, LaneRobot, Width};
 use crate::certify::certify_path;
 use crate::edge::EdgeChecker;
 use crate::scene::{RobotChecker, Rules, Scene};
@@ -92,8 +92,8 @@ impl Bench {
         RobotChecker::new(&self.scene, &self.space, dofs, q, Rules::default(), 0.01)
     }
 
-    fn lanes(&self, width: Width) -> LaneChecker<'_> {
-        LaneChecker::new(&self.lanes, &self.scene, &self.space, 0.0, width)
+    fn lanes<'a>(&'a self, width: Width, memory: &'a mut LaneMemory) -> LaneChecker<'a> {
+        LaneChecker::new(&self.lanes, &self.scene, &self.space, 0.0, width, memory)
     }
 }
 
@@ -103,7 +103,8 @@ fn states_are_as_exact_geometry_says() {
     let (mut free, mut touching) = (0, 0);
     for trial in 0..4 {
         let bench = bench(trial % 2 == 0, &covers, &mut rng);
-        let (mut exact, mut lanes) = (bench.exact(), bench.lanes(Width::widest()));
+        let mut memory = LaneMemory::default();
+        let (mut exact, mut lanes) = (bench.exact(), bench.lanes(Width::widest(), &mut memory));
         for _ in 0..150 {
             let q = bench.space.sample(&mut rng);
             let (expected, found) = (exact.state(&q), lanes.state(&q));
@@ -121,7 +122,8 @@ fn free_edges_are_free_throughout_and_blocked_ones_are_not() {
     for trial in 0..5 {
         let bench = bench(trial % 2 == 0, &covers, &mut rng);
         let mut exact = bench.exact();
-        let mut lanes = bench.lanes(Width::widest());
+        let mut memory = LaneMemory::default();
+        let mut lanes = bench.lanes(Width::widest(), &mut memory);
         for _ in 0..40 {
             let from = bench.space.sample(&mut rng);
             if lanes.state(&from).is_err() {
@@ -155,7 +157,10 @@ fn free_edges_are_free_throughout_and_blocked_ones_are_not() {
 fn every_number_of_lanes_gives_the_same_answers() {
     let mut rng = Seed::new(23).rng();
     let bench = bench(true, &covers(), &mut rng);
-    let mut checkers: Vec<_> = Width::all().into_iter().map(|width| bench.lanes(width)).collect();
+    let widths = Width::all();
+    let mut memories: Vec<LaneMemory> = widths.iter().map(|_| LaneMemory::default()).collect();
+    let each = widths.into_iter().zip(&mut memories);
+    let mut checkers: Vec<_> = each.map(|(width, memory)| bench.lanes(width, memory)).collect();
     assert!(Width::all().windows(2).all(|w| w[0].lanes() < w[1].lanes()));
     let mut free = 0;
     for _ in 0..200 {

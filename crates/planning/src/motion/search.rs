@@ -1,10 +1,8 @@
-//! RRT-Connect with dynamic domains and restarts.
+//! RRT-Connect with restarts.
 //!
 //! Two trees grow in turn, the smaller one next, each step followed by an attempt to connect (Kuffner and LaValle,
-//! "RRT-Connect", 2000). A node from which a step was blocked is grown only by samples that are near (Jaillet, Yershova,
-//! LaValle and Simeon, "Adaptive tuning of the sampling domain for dynamic-domain RRTs", 2005). Search times have a heavy
-//! tail, so that searches start over after a number of iterations that follows Luby's sequence (Luby, Sinclair and
-//! Zuckerman, "Optimal speedup of Las Vegas algorithms", 1993).
+//! "RRT-Connect", 2000). Search times have a heavy tail, so that searches start over after a number of iterations that
+//! follows Luby's sequence (Luby, Sinclair and Zuckerman, "Optimal speedup of Las Vegas algorithms", 1993).
 
 use robotc_core::Seed;
 use robotc_core::rng::Rng;
@@ -12,7 +10,7 @@ use robotc_core::rng::Rng;
 use super::tree::Tree;
 use super::{MotionFailure, MotionPlan};
 use crate::budget::Budget;
-use crate::edge::{EdgeChecker, Patience};
+use crate::edge::EdgeChecker;
 use crate::space::Space;
 
 /// Parameters of the search.
@@ -22,30 +20,15 @@ pub struct SearchOptions {
     pub step: f64,
     /// Share of samples drawn near a random node rather than anywhere.
     pub local: f64,
-    /// Radius of the domain of a node after its first blocked step, in longest edges.
-    pub domain: f64,
-    /// What a blocked step shrinks a domain by, and a free one widens it by, as a share.
-    pub adaption: f64,
     /// Iterations of the shortest run; others are 1, 1, 2, 1, 1, 2, 4, ... times as long.
     pub restart: u32,
-    /// Iterations of the first run in which motions that pass narrowly count as blocked, unless they begin or end at the
-    /// start or the goal.
-    pub hasty: u32,
     /// Iterations, over all runs, after which the search gives up.
     pub max_iterations: u32,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self {
-            step: 0.1,
-            local: 0.2,
-            domain: 3.0,
-            adaption: 0.05,
-            restart: 2000,
-            hasty: 100,
-            max_iterations: 200_000,
-        }
+        Self { step: 0.1, local: 0.3, restart: 4000, max_iterations: 500_000 }
     }
 }
 
@@ -84,14 +67,13 @@ pub(super) fn run<C: EdgeChecker + ?Sized>(
         search.from_goal.plant(goal);
         let mut rng = seed.at(run).rng();
         let length = options.restart.saturating_mul(luby(run + 1)).max(1);
-        for iteration in 0..length {
+        for _ in 0..length {
             budget.check().map_err(|interrupt| MotionFailure::Interrupted(interrupt, iterations))?;
             if iterations >= options.max_iterations {
                 return Err(MotionFailure::Iterations(iterations));
             }
             iterations += 1;
-            let hasty = run == 0 && iteration < options.hasty;
-            if let Some(path) = search.iterate(checker, hasty, &mut rng) {
+            if let Some(path) = search.iterate(checker, &mut rng) {
                 return Ok(MotionPlan { path, iterations });
             }
         }
@@ -122,38 +104,20 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// Grows the smaller tree by a step and tries to connect; a path when the trees meet.
-    fn iterate<C: EdgeChecker + ?Sized>(
-        &mut self,
-        checker: &mut C,
-        hasty: bool,
-        rng: &mut Rng,
-    ) -> Option<Vec<Vec<f64>>> {
+    fn iterate<C: EdgeChecker + ?Sized>(&mut self, checker: &mut C, rng: &mut Rng) -> Option<Vec<Vec<f64>>> {
         let Self { options, step, from_start, from_goal, sample, next } = self;
         let forward = from_start.len() <= from_goal.len();
         let (grown, other) = if forward { (from_start, from_goal) } else { (from_goal, from_start) };
         draw(checker.space(), grown, options.local, *step, sample, rng);
         let (near, distance) = grown.nearest(checker.space(), sample);
-        if distance > grown.domain(near) {
-            return None;
-        }
-        let new = match extend(checker, grown, near, distance, sample, *step, hasty, next) {
-            Reach::There(node) | Reach::Short(node) => {
-                grown.set_domain(near, grown.domain(near) * (1.0 + options.adaption));
-                node
-            }
-            Reach::Blocked => {
-                let radius = match grown.domain(near) {
-                    f64::INFINITY => options.domain * *step,
-                    radius => (radius * (1.0 - options.adaption)).max(0.5 * *step),
-                };
-                grown.set_domain(near, radius);
-                return None;
-            }
+        let new = match extend(checker, grown, near, distance, sample, *step, next) {
+            Reach::There(node) | Reach::Short(node) => node,
+            Reach::Blocked => return None,
         };
         sample.copy_from_slice(grown.state(new));
         let (mut at, mut distance) = other.nearest(checker.space(), sample);
         loop {
-            match extend(checker, other, at, distance, sample, *step, hasty, next) {
+            match extend(checker, other, at, distance, sample, *step, next) {
                 Reach::Short(node) => (at, distance) = (node, distance - *step),
                 Reach::Blocked => return None,
                 Reach::There(met) => {
@@ -199,7 +163,6 @@ fn extend<C: EdgeChecker + ?Sized>(
     distance: f64,
     towards: &[f64],
     step: f64,
-    hasty: bool,
     next: &mut Vec<f64>,
 ) -> Reach {
     let arrives = distance <= step;
@@ -209,9 +172,6 @@ fn extend<C: EdgeChecker + ?Sized>(
     } else {
         checker.space().interpolate_into(tree.state(node), towards, step / distance, next);
     }
-    // Start and goal are often in narrow places, and must be left.
-    let patience = if hasty && node != 0 { Patience::Hasty } else { Patience::Thorough };
-    checker.set_patience(patience);
     if checker.edge(tree.state(node), next).is_err() {
         return Reach::Blocked;
     }

@@ -8,8 +8,6 @@ pub(super) struct Tree {
     dimension: usize,
     states: Vec<f64>,
     parents: Vec<u32>,
-    /// Samples farther away than this from a node do not grow it; infinite until it was blocked once.
-    domains: Vec<f64>,
 }
 
 impl Tree {
@@ -18,7 +16,6 @@ impl Tree {
         self.dimension = root.len();
         self.states.clear();
         self.parents.clear();
-        self.domains.clear();
         self.push(0, root);
     }
 
@@ -34,16 +31,7 @@ impl Tree {
         let node = self.len();
         self.states.extend_from_slice(q);
         self.parents.push(parent as u32);
-        self.domains.push(f64::INFINITY);
         node
-    }
-
-    pub(super) fn domain(&self, node: usize) -> f64 {
-        self.domains[node]
-    }
-
-    pub(super) fn set_domain(&mut self, node: usize, radius: f64) {
-        self.domains[node] = radius;
     }
 
     /// The node nearest to `q`, the first of equals, and its distance.

@@ -1,0 +1,186 @@
+//! `robotc bench`: how fast planning and collision checks are, on given problems.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use clap::{Args, Subcommand};
+use robotc_core::urdf::{self, LoadOptions};
+use robotc_core::{Sources, srdf};
+use robotc_kb::os::OsSystem;
+use robotc_planning::bench::{self, BenchOptions, BenchRobot, ProblemSet, Report, Summary};
+
+use super::compile::write_whole;
+use crate::output::{Failure, Outcome, print, say};
+use crate::progress::Progress;
+
+/// Measure planning and collision checks on given problems
+#[derive(Args)]
+pub(crate) struct Bench {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Subcommand)]
+enum What {
+    Checks(Checks),
+    Motion(Motion),
+}
+
+/// Files that problems are about.
+#[derive(Args)]
+struct Input {
+    /// Problems: a JSON file, or one compressed by xz
+    problems: PathBuf,
+    /// Robot description
+    #[arg(long, value_name = "FILE")]
+    urdf: PathBuf,
+    /// Its semantic description: pairs of links that need no test
+    #[arg(long, value_name = "FILE")]
+    srdf: PathBuf,
+    /// File for all figures
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+}
+
+/// Count configurations checked per second, in lanes and one at a time
+#[derive(Args)]
+#[command(
+    after_help = "Example:\n  robotc bench checks panda_problems.json.xz --urdf panda.urdf --srdf panda.srdf\n\n\
+    All checkers look at the same free motions in the first problem of each family of scenes."
+)]
+struct Checks {
+    #[command(flatten)]
+    input: Input,
+}
+
+/// Plan every problem of a file and report times, path lengths and proofs
+#[derive(Args)]
+#[command(
+    after_help = "Example:\n  robotc bench motion panda_problems.json.xz --urdf panda.urdf --srdf panda.srdf \
+    --report panda.json\n\n\
+    Problems are those of MotionBenchMaker in a flat JSON form. A problem is valid when its start and goal are free, with \
+    every collision element of the robot as its convex hull; a path counts as certified when code that the planner does \
+    not use proves all of it free."
+)]
+struct Motion {
+    #[command(flatten)]
+    input: Input,
+    /// Plan each problem this often, each time with another seed
+    #[arg(long, value_name = "K", default_value_t = BenchOptions::default().seeds)]
+    seeds: u32,
+    /// Iterations after which a search gives up
+    #[arg(long, value_name = "N", default_value_t = BenchOptions::default().motion.search.max_iterations)]
+    iterations: u32,
+}
+
+pub(crate) fn run(args: &Bench) -> Outcome {
+    match &args.what {
+        What::Checks(args) => checks(args),
+        What::Motion(args) => motion(args),
+    }
+}
+
+fn checks(args: &Checks) -> Outcome {
+    let set = problems(&args.input.problems)?;
+    let clock = Instant::now();
+    let now = || clock.elapsed().as_secs_f64();
+    let (robot, _) = robot(&args.input, &set, &now)?;
+    let rates = bench::measure_checks(&robot, &set, &now);
+    let rates = rates.map_err(|error| Failure::Input(error.to_string()))?;
+    print(&format!("{}: configurations per second, thousands", set.robot));
+    for rate in &rates {
+        let lanes = rate.lanes.iter().map(|(lanes, rate)| format!("{lanes} lanes {:7.0}", rate / 1e3));
+        let best = rate.lanes.iter().map(|(_, rate)| *rate).fold(0.0, f64::max);
+        print(&format!(
+            "{:16} {:2} obstacles: {}, one at a time {:5.1}: {:.0} times",
+            rate.scene,
+            rate.obstacles,
+            lanes.collect::<Vec<_>>().join(", "),
+            rate.scalar / 1e3,
+            best / rate.scalar
+        ));
+    }
+    write_report(&args.input, &rates)
+}
+
+fn write_report(input: &Input, report: &impl serde::Serialize) -> Outcome {
+    if let Some(path) = &input.report {
+        let text = serde_json::to_string_pretty(report).expect("plain values always have a JSON form");
+        write_whole(path, (text + "\n").as_bytes())?;
+        say(&format!("wrote {}", path.display()));
+    }
+    Ok(())
+}
+
+fn motion(args: &Motion) -> Outcome {
+    let set = problems(&args.input.problems)?;
+    let clock = Instant::now();
+    let now = || clock.elapsed().as_secs_f64();
+    let (robot, ready_s) = robot(&args.input, &set, &now)?;
+    let mut options = BenchOptions { seeds: args.seeds, ..BenchOptions::default() };
+    options.motion.search.max_iterations = args.iterations;
+    let mut progress = Progress::new();
+    let (mut done, total) = (0, set.problems.len());
+    let mut finished = |row: &bench::Row| {
+        done += 1;
+        progress.update(&row.scene, f64::from(done) / total.max(1) as f64);
+    };
+    let report = bench::run(&robot, &set, ready_s, &options, &now, &mut finished);
+    let report = report.map_err(|error| Failure::Input(error.to_string()))?;
+    drop(progress);
+    show(&report);
+    write_report(&args.input, &report)
+}
+
+/// The robot that problems are about, and the seconds from its files to ready.
+fn robot(input: &Input, set: &ProblemSet, now: &dyn Fn() -> f64) -> Outcome<(BenchRobot, f64)> {
+    let start = now();
+    let mut sources = Sources::new();
+    let (model, found) = urdf::load(&OsSystem, &mut sources, &input.urdf, &LoadOptions::default());
+    let model = Arc::new(crate::input::accept(model, &found, &sources)?);
+    let (srdf, found) = srdf::load(&OsSystem, &mut sources, &input.srdf, None);
+    let srdf = crate::input::accept(srdf, &found, &sources)?;
+    let robot = BenchRobot::new(model, &srdf, &set.joints);
+    Ok((robot.map_err(|error| Failure::Input(error.to_string()))?, now() - start))
+}
+
+/// Problems from a file, unpacked when its name ends in `.xz`.
+fn problems(path: &Path) -> Outcome<ProblemSet> {
+    let wrong = |message: String| Failure::Input(format!("{}: {message}", path.display()));
+    let mut file = File::open(path).map_err(|error| wrong(error.to_string()))?;
+    let mut text = String::new();
+    let read = match path.extension().is_some_and(|extension| extension == "xz") {
+        true => lzma_rust2::XzReader::new(file, true).read_to_string(&mut text),
+        false => file.read_to_string(&mut text),
+    };
+    read.map_err(|error| wrong(error.to_string()))?;
+    ProblemSet::parse(&text).map_err(|error| wrong(error.to_string()))
+}
+
+fn show(report: &Report) {
+    print(&format!("{}: ready in {:.2} s, {} seeds", report.robot, report.ready_s, report.seeds));
+    print(
+        "scene             valid solved proven   plan us: median      p95      max  total: median      p95   cost simplified",
+    );
+    let row = |name: &str, s: &Summary| {
+        print(&format!(
+            "{name:16} {:3}/{:3} {:6} {:6} {:17.0} {:8.0} {:8.0} {:14.0} {:8.0} {:6.2} {:10.2}",
+            s.valid,
+            s.problems,
+            s.solved,
+            s.certified,
+            s.plan_us_median,
+            s.plan_us_p95,
+            s.plan_us_max,
+            s.total_us_median,
+            s.total_us_p95,
+            s.cost_mean,
+            s.cost_simplified_mean
+        ));
+    };
+    report.scenes.iter().for_each(|scene| row(&scene.scene, &scene.summary));
+    row("all", &report.summary);
+}
