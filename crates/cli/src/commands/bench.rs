@@ -48,7 +48,7 @@ struct Input {
 /// Count configurations checked per second, in lanes and one at a time
 #[derive(Args)]
 #[command(
-    after_help = "Example:\n  robotc bench checks panda_problems.json.xz --urdf panda.urdf --srdf panda.srdf\n\n\
+    after_help = "Example:\n  robotc bench checks problems.json.xz --urdf arm.urdf --srdf arm.srdf\n\n\
     All checkers look at the same free motions in the first problem of each family of scenes."
 )]
 struct Checks {
@@ -59,8 +59,8 @@ struct Checks {
 /// Plan every problem of a file and report times, path lengths and proofs
 #[derive(Args)]
 #[command(
-    after_help = "Example:\n  robotc bench motion panda_problems.json.xz --urdf panda.urdf --srdf panda.srdf \
-    --report panda.json\n\n\
+    after_help = "Example:\n  robotc bench motion problems.json.xz --urdf arm.urdf --srdf arm.srdf \
+    --report report.json\n\n\
     Problems are those of MotionBenchMaker in a flat JSON form. A problem is valid when its start and goal are free, with \
     every collision element of the robot as its convex hull; a path counts as certified when code that the planner does \
     not use proves all of it free."
