@@ -58,13 +58,11 @@ struct Checks {
 
 /// Plan every problem of a file and report times, path lengths and proofs
 #[derive(Args)]
-#[command(
-    after_help = "Example:\n  robotc bench motion problems.json.xz --urdf arm.urdf --srdf arm.srdf \
+#[command(after_help = "Example:\n  robotc bench motion problems.json.xz --urdf arm.urdf --srdf arm.srdf \
     --report report.json\n\n\
     Problems are those of MotionBenchMaker in a flat JSON form. A problem is valid when its start and goal are free, with \
     every collision element of the robot as its convex hull; a path counts as certified when code that the planner does \
-    not use proves all of it free."
-)]
+    not use proves all of it free.")]
 struct Motion {
     #[command(flatten)]
     input: Input,
