@@ -4,6 +4,7 @@ mod assets;
 mod browser;
 mod docs;
 mod fuzz;
+mod ik_bench;
 mod ik_zoo;
 mod kill;
 mod python;
@@ -19,6 +20,7 @@ type Task = (&'static str, &'static str, fn(&[String]) -> anyhow::Result<()>);
 const TASKS: &[Task] = &[
     ("assets", "write the geometry in specs/, or --check it", assets::run),
     ("fuzz", "fuzz the readers: [TARGET...] [--seconds N]", fuzz::run),
+    ("ik-bench", "time generated solvers beside published ones: [POSES]", ik_bench::run),
     ("ik-zoo", "inverse kinematics of every arm of a folder: [FOLDER] [POSES]", ik_zoo::run),
     ("kill", "kill compilations at random moments: [TRIALS] [PROGRAM]", kill::run),
     ("python", "build the Python wheel and run its tests, [ARGUMENTS OF PYTEST]", python::run),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use robotc_core::urdf::{self, LoadOptions, MeshPolicy};
 use robotc_core::{Kinematics, LinkIdx, RobotModel, SerialChain, Sources, diag};
 use robotc_ikgen::backend::RustOptions;
@@ -17,9 +17,10 @@ use crate::output::{Failure, Outcome, print, say};
 /// Compile and prove the inverse kinematics of a chain of a URDF
 #[derive(Args)]
 #[command(after_help = "Examples:\n  robotc ik arm.urdf --base base_link --tip tool0\n  \
-    robotc ik arm.urdf --base base_link --tip tool0 -o arm_ik.rs --report arm_ik.json\n\n\
-    The source is one Rust file without dependencies that needs neither std nor memory allocation. It is written only \
-    when the solver passed its proof.")]
+    robotc ik arm.urdf --base base_link --tip tool0 -o arm_ik.rs --report arm_ik.json\n  \
+    robotc ik arm.urdf --base base_link --tip tool0 -o arm_ik.c\n\n\
+    The source is one Rust file without dependencies that needs neither std nor memory allocation, or a C99 source with its \
+    header. It is written only when the solver passed its proof.")]
 pub(crate) struct Ik {
     /// URDF or xacro file; its meshes are not needed
     urdf: PathBuf,
@@ -32,10 +33,13 @@ pub(crate) struct Ik {
     /// Joints whose values the caller gives, separated by commas [default: chosen when there are seven joints]
     #[arg(long, value_name = "JOINT", value_delimiter = ',')]
     free: Option<Vec<String>>,
-    /// File for the generated source: Rust, or the solution program when it ends in .ik
-    #[arg(short, long, value_name = "FILE.rs|FILE.ik")]
+    /// File for the generated source; of C the header is written beside it
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Let the source use the square root of std: faster
+    /// Language of the source [default: by the ending of the file: .rs, .c or .ik]
+    #[arg(long, value_enum, requires = "output")]
+    language: Option<Language>,
+    /// Let Rust use the square root of std: faster
     #[arg(long)]
     std: bool,
     /// File for the proof
@@ -57,6 +61,14 @@ pub(crate) struct Ik {
     /// Show what was tried
     #[arg(long)]
     explain: bool,
+}
+
+/// What a solver is written in: one Rust file, C99 source and header, or the solution program that the run-time library loads.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Language {
+    Rust,
+    C,
+    Program,
 }
 
 pub(crate) fn run(args: &Ik) -> Outcome {
@@ -92,7 +104,7 @@ pub(crate) fn run(args: &Ik) -> Outcome {
     };
     show(&chain, &report);
     if let Some(path) = &args.output {
-        write_source(path, compiled, args.std)?;
+        write_source(path, compiled, args)?;
     }
     Ok(())
 }
@@ -156,13 +168,33 @@ fn show(chain: &SerialChain, report: &Report) {
     }
 }
 
-fn write_source(path: &Path, compiled: &Compiled, std: bool) -> Outcome {
-    let text = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("rs") => compiled.rust_source(&RustOptions { std }),
-        Some("ik") => compiled.text(),
-        _ => return Err(Failure::Input(format!("{}: the name must end in .rs or .ik", path.display()))),
+fn write_source(path: &Path, compiled: &Compiled, args: &Ik) -> Outcome {
+    let ending = path.extension().and_then(|extension| extension.to_str());
+    let language = match (args.language, ending) {
+        (Some(language), _) => language,
+        (None, Some("rs")) => Language::Rust,
+        (None, Some("c")) => Language::C,
+        (None, Some("ik")) => Language::Program,
+        _ => {
+            let path = path.display();
+            return Err(Failure::Input(format!(
+                "{path}: the name must end in .rs, .c or .ik, or --language be given"
+            )));
+        }
     };
-    write_whole(path, text.as_bytes())?;
-    say(&format!("wrote {}", path.display()));
-    Ok(())
+    let write = |path: &Path, text: &str| {
+        write_whole(path, text.as_bytes())?;
+        say(&format!("wrote {}", path.display()));
+        Ok(())
+    };
+    match language {
+        Language::Rust => write(path, &compiled.rust_source(&RustOptions { std: args.std })),
+        Language::Program => write(path, &compiled.text()),
+        Language::C => {
+            let stem = path.file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
+            let source = compiled.c_source(&stem).map_err(|error| Failure::Input(error.to_string()))?;
+            write(&path.with_extension("h"), &source.header)?;
+            write(path, &source.source)
+        }
+    }
 }
