@@ -6,6 +6,7 @@
 mod arrays;
 mod distributed;
 mod errors;
+mod generate;
 mod inverse;
 mod knowledge;
 mod long;
@@ -25,6 +26,7 @@ fn _robotc(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<task::Task>()?;
     m.add_class::<knowledge::KnowledgeBase>()?;
     m.add_class::<inverse::InverseKinematics>()?;
+    m.add_function(wrap_pyfunction!(generate::generate_ik, m)?)?;
     m.add_class::<plan::Session>()?;
     m.add_class::<plan::Plan>()?;
     Ok(())

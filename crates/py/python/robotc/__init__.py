@@ -8,6 +8,7 @@
 Lengths are metres and angles radians; poses are 4 x 4 matrices. Long calls release the interpreter lock and stop at Ctrl-C.
 """
 
+from . import ik as ik
 from ._robotc import (
     CompileError,
     InverseKinematics,

@@ -1,0 +1,138 @@
+//! Inverse kinematics generated from a URDF alone.
+
+use std::path::PathBuf;
+
+use numpy::{PyArray2, PyReadonlyArray2};
+use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
+use pyo3::prelude::*;
+use robotc_core::ik::{IkSolutions, InverseKinematics as _};
+use robotc_core::urdf::{self, LoadOptions, MeshPolicy};
+use robotc_core::{Kinematics, SerialChain, Sources};
+use robotc_ikgen::{Compiled, Options, RustOptions, Solver, compile};
+use robotc_kb::os::OsSystem;
+
+use crate::arrays;
+use crate::errors::{CompileError, accept};
+
+/// A solver of one chain, usable at once, and its source.
+#[pyclass(frozen, module = "robotc.ik")]
+pub(crate) struct GeneratedSolver {
+    compiled: Compiled,
+    solver: Solver,
+}
+
+/// Compiles the chain from link `base` to link `tip` of a URDF or xacro file; `free` names joints whose values will be given.
+#[pyfunction(name = "_generate_ik")]
+#[pyo3(signature = (urdf, base, tip, free = None, tolerance = None))]
+pub(crate) fn generate_ik(
+    py: Python<'_>,
+    urdf: PathBuf,
+    base: &str,
+    tip: &str,
+    free: Option<Vec<String>>,
+    tolerance: Option<f64>,
+) -> PyResult<GeneratedSolver> {
+    let mut sources = Sources::new();
+    let load = LoadOptions { meshes: MeshPolicy::Ignore, ..LoadOptions::default() };
+    let (model, found) = urdf::load(&OsSystem, &mut sources, &urdf, &load);
+    let model = accept(py, model, &found, &sources)?;
+    let link = |name: &str| {
+        model.link_named(name).ok_or_else(|| PyKeyError::new_err(format!("there is no link {name}")))
+    };
+    let (base, tip) = (link(base)?, link(tip)?);
+    let chain = SerialChain::between(&Kinematics::new(model.into()), base, tip)
+        .map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let position = |name: &String| {
+        let position = chain.variables.iter().position(|v| v.name == *name);
+        position.ok_or_else(|| PyKeyError::new_err(format!("the chain has no joint {name}")))
+    };
+    let mut free: Option<Vec<usize>> =
+        free.map(|names| names.iter().map(position).collect::<PyResult<_>>()).transpose()?;
+    if let Some(free) = &mut free {
+        free.sort_unstable();
+        free.dedup();
+    }
+    let mut options = Options { free, ..Options::default() };
+    if let Some(tolerance) = tolerance {
+        if !(tolerance.is_finite() && tolerance >= 0.0) {
+            return Err(PyValueError::new_err("the tolerance cannot be negative"));
+        }
+        options.tolerance = tolerance;
+    }
+    let compiled =
+        py.detach(|| compile(&chain, &options)).map_err(|refusal| CompileError::new_err(refusal.reason))?;
+    Ok(GeneratedSolver { solver: compiled.solver(), compiled })
+}
+
+#[pymethods]
+impl GeneratedSolver {
+    /// Class of the chain and how it is solved.
+    #[getter]
+    fn kind(&self) -> &str {
+        &self.compiled.class
+    }
+
+    #[getter]
+    fn joint_names(&self) -> Vec<String> {
+        self.compiled.chain().variables.iter().map(|v| v.name.clone()).collect()
+    }
+
+    #[getter]
+    fn free_joints(&self) -> Vec<String> {
+        let variables = &self.compiled.chain().variables;
+        self.compiled.free.iter().map(|&i| variables[i].name.clone()).collect()
+    }
+
+    /// A row for each solution. `pose` is `base_from_tip`, a 4 x 4 matrix; `free` the values of the free joints.
+    #[pyo3(signature = (pose, free = Vec::new()))]
+    fn solve<'py>(
+        &self,
+        py: Python<'py>,
+        pose: PyReadonlyArray2<'py, f64>,
+        free: Vec<f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let expected = self.compiled.free.len();
+        if free.len() != expected {
+            return Err(PyValueError::new_err(format!(
+                "expected {expected} free values, got {}",
+                free.len()
+            )));
+        }
+        let mut solutions = IkSolutions::new();
+        self.solver.solve(&arrays::pose(&pose)?, &free, &mut solutions);
+        let rows: Vec<Vec<f64>> = solutions.iter().map(<[f64]>::to_vec).collect();
+        Ok(arrays::rows(py, &rows, self.compiled.chain().variables.len()))
+    }
+
+    /// `base_from_tip` at these joint values, as a 4 x 4 matrix.
+    fn fk<'py>(&self, py: Python<'py>, joints: Vec<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let chain = self.compiled.chain();
+        if joints.len() != chain.variables.len() {
+            let expected = chain.variables.len();
+            return Err(PyValueError::new_err(format!(
+                "expected {expected} joint values, got {}",
+                joints.len()
+            )));
+        }
+        Ok(arrays::matrix(py, &chain.forward(&joints)))
+    }
+
+    /// Writes the solver to a file: Rust (`.rs`), C with its header beside it (`.c`), or the solution program (`.ik`).
+    fn write(&self, path: PathBuf) -> PyResult<()> {
+        let write = |path: &PathBuf, text: &str| {
+            std::fs::write(path, text).map_err(|e| PyOSError::new_err(format!("{}: {e}", path.display())))
+        };
+        match path.extension().and_then(|ending| ending.to_str()) {
+            Some("rs") => write(&path, &self.compiled.rust_source(&RustOptions::default())),
+            Some("ik") => write(&path, &self.compiled.text()),
+            Some("c") => {
+                let stem = path.file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
+                let source = self.compiled.c_source(&stem);
+                let source = source.map_err(|error| PyValueError::new_err(error.to_string()))?;
+                write(&path.with_extension("h"), &source.header)?;
+                write(&path, &source.source)
+            }
+            _ => Err(PyValueError::new_err("the name must end in .rs, .c or .ik")),
+        }
+    }
+}

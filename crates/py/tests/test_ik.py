@@ -1,0 +1,43 @@
+"""Inverse kinematics from a URDF alone."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import robotc
+
+PANDA = Path(__file__).resolve().parents[3] / "specs" / "robots" / "panda" / "panda.urdf"
+
+
+@pytest.fixture(scope="module")
+def solver():
+    return robotc.ik.generate(PANDA, "panda_link0", "panda_link8")
+
+
+def test_solutions_reach_the_pose(solver):
+    assert solver.kind.startswith("7R")
+    assert len(solver.free_joints) == 1
+    given = solver.joint_names.index(solver.free_joints[0])
+    joints = [0.1, -0.4, 0.3, -1.8, 0.2, 1.7, 0.5]
+    pose = solver.fk(joints)
+    solutions = solver.solve(pose, free=[joints[given]])
+    assert len(solutions) > 0
+    for solution in solutions:
+        np.testing.assert_allclose(solver.fk(solution), pose, atol=1e-9)
+    assert np.abs(solutions - joints).max(axis=1).min() < 1e-6
+
+
+def test_sources(solver, tmp_path):
+    for name in ["arm.rs", "arm.c", "arm.ik"]:
+        solver.write(tmp_path / name)
+    assert "arm_solve(" in (tmp_path / "arm.h").read_text()
+    with pytest.raises(ValueError, match="must end in"):
+        solver.write(tmp_path / "arm.txt")
+
+
+def test_unknown_names():
+    with pytest.raises(KeyError, match="no link nowhere"):
+        robotc.ik.generate(PANDA, "panda_link0", "nowhere")
+    with pytest.raises(KeyError, match="no joint elbow"):
+        robotc.ik.generate(PANDA, "panda_link0", "panda_link8", free=["elbow"])
