@@ -4,7 +4,10 @@
 //! configurations and of uniform poses compared with exhaustive inverse kinematics, and the time of a query. Prints rows of
 //! a Markdown table.
 
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
 use std::error::Error;
+use std::f64::consts::PI;
 use std::hint::black_box;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -204,11 +207,11 @@ fn placements(arm: &ArmAlone, map: &ReachabilityMap, free: &[Vec<f64>]) -> Resul
     for _ in 0..SAMPLES {
         let Some(placement) = placements.sample(&mut rng) else { break };
         good += usize::from(reached(placement.position, placement.yaw, placement.target));
-        let (angle, distance) = (rng.range(-3.1415, 3.1415), radius * rng.unit().sqrt());
+        let (angle, distance) = (rng.range(-PI, PI), radius * rng.unit().sqrt());
         let target = rng.below(POSES);
         let p = targets[target].world_from_tip.translation.vector;
         let position = [p.x + distance * angle.cos(), p.y + distance * angle.sin()];
-        uniform += usize::from(reached(position, rng.range(-3.1415, 3.1415), target));
+        uniform += usize::from(reached(position, rng.range(-PI, PI), target));
     }
     let share = |count: usize| 100.0 * count as f64 / SAMPLES as f64;
     Ok(format!(

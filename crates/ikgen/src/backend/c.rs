@@ -263,7 +263,7 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                 let bind: String = used
                     .map(|(i, v)| format!("{pad}    const double {} = root{k}[{i}];\n", p.name(*v)))
                     .collect();
-                let _ = write!(out, "{take}{bind}{inner}{pad}}}\n");
+                let _ = writeln!(out, "{take}{bind}{inner}{pad}}}");
             }
             Stmt::IfZero { value, tolerance, then, otherwise } => {
                 let test = format!("ik_abs({}) < {tolerance:?}", text(p, *value));

@@ -113,19 +113,22 @@ impl Obstacle {
         match &self.solid {
             Solid::Sphere(_) => (zero, zero),
             Solid::Box(half) => {
-                let (x, y, z) =
-                    (beyond(x, splat(half[0])), beyond(y, splat(half[1])), beyond(z, splat(half[2])));
+                let (x, y, z) = (
+                    beyond(x, splat(half[0]), zero),
+                    beyond(y, splat(half[1]), zero),
+                    beyond(z, splat(half[2]), zero),
+                );
                 let squared = x * x + y * y + z * z;
                 (squared, squared)
             }
             Solid::Cylinder(radius, half) => {
                 let aside = ((x * x + y * y).sqrt() - splat(*radius)).max(zero);
-                let z = beyond(z, splat(*half));
+                let z = beyond(z, splat(*half), zero);
                 let squared = aside * aside + z * z;
                 (squared, squared)
             }
             Solid::Capsule(radius, half) => {
-                let z = beyond(z, splat(*half));
+                let z = beyond(z, splat(*half), zero);
                 let gap = ((x * x + y * y + z * z).sqrt() - splat(*radius)).max(zero);
                 let squared = gap * gap;
                 (squared, squared)
@@ -158,6 +161,6 @@ fn flat<S: Simd>(v: &Vector<S>, row: &[f32; 3]) -> Lanes<S> {
 
 /// How far a coordinate is beyond half an edge, on either side.
 #[inline(always)]
-fn beyond<S: Simd>(x: Lanes<S>, half: Lanes<S>) -> Lanes<S> {
-    (x.abs() - half).max(half - half)
+fn beyond<S: Simd>(x: Lanes<S>, half: Lanes<S>, zero: Lanes<S>) -> Lanes<S> {
+    (x.abs() - half).max(zero)
 }

@@ -64,7 +64,7 @@ pub(super) fn encode(map: &ReachabilityMap) -> Vec<u8> {
 /// The map of these bytes.
 pub(super) fn decode(bytes: &[u8]) -> Result<ReachabilityMap, DecodeError> {
     let s: Stored = codec::decode(bytes)?;
-    if !s.position.iter().chain(&s.rotation).all(|x| x.is_finite()) || !(s.step.is_finite() && s.step > 0.0) {
+    if !s.position.iter().chain(&s.rotation).chain([&s.step]).all(|x| x.is_finite()) || s.step <= 0.0 {
         return Err(DecodeError::new("a number is not finite"));
     }
     let rotation = UnitQuaternion::new_unchecked(Quaternion::from(s.rotation));

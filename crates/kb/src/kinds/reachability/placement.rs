@@ -233,6 +233,8 @@ fn direction(index: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use robotc_core::Seed;
 
     use super::super::grid::Grid;
@@ -306,7 +308,7 @@ mod tests {
             for _ in 0..400 {
                 let x = corner[0] + step * ((square % side) as f64 + rng.unit());
                 let y = corner[1] + step * ((square / side) as f64 + rng.unit());
-                let yaw = rng.range(-3.1415, 3.1415);
+                let yaw = rng.range(-PI, PI);
                 let placement = Placement { position: [x, y], yaw, target: 0, mount: 0 };
                 let found = verdicts(&map, &placement, &mount, &targets);
                 expected[square] += f64::from(u8::from(found[0] == Verdict::Yes));
