@@ -45,8 +45,9 @@ impl Observer for Watch<'_> {
         let Some(progress) = &self.progress else { return };
         let told = match event {
             Event::Started { kind, subject, .. } => Some((kind, subject, 0.0)),
-            Event::Progress { kind, subject, done, total } => {
-                Some((kind, subject, done as f64 / total.max(1) as f64))
+            // Finished is what is stored: it is told as 1, and nothing else is.
+            Event::Progress { kind, subject, done, total } if done < total => {
+                Some((kind, subject, done as f64 / total as f64))
             }
             Event::Stored { kind, subject, .. } => Some((kind, subject, 1.0)),
             _ => None,
@@ -63,7 +64,8 @@ impl Observer for Watch<'_> {
 
 #[pymethods]
 impl KnowledgeBase {
-    /// Compiles what `subject` needs and `store` lacks. `progress(kind, subject, fraction)` is called now and then.
+    /// Compiles what `subject` needs and `store` lacks. `progress(kind, subject, fraction)` is called now and
+    /// then; the fraction is 1 when the artefact is stored.
     #[new]
     #[pyo3(signature = (subject, store, progress = None))]
     fn new(
