@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use super::{rewrite, with_body};
+use super::with_body;
 use crate::ir::{Block, Expr, Exprs, Node, Program, RootKind, Stmt, Unary, Var, blocks_of, map_stmt};
 use crate::kernel::roots::VANISHING;
 
@@ -106,12 +106,19 @@ fn signs(args: &[Expr], other: &Other, out: &mut Program) -> Option<Vec<bool>> {
 }
 
 fn changed(e: Expr, other: &Other, out: &mut Program) -> Expr {
-    let from = out.exprs.clone();
-    let replace = |x: Expr, _: &mut Exprs| match from.node(x) {
-        Node::Var(v) => other.get(&v).copied(),
-        _ => None,
+    changed_in(&mut out.exprs, e, other, &mut HashMap::new())
+}
+
+fn changed_in(exprs: &mut Exprs, e: Expr, other: &Other, memo: &mut HashMap<Expr, Expr>) -> Expr {
+    if let Some(done) = memo.get(&e) {
+        return *done;
+    }
+    let there = match exprs.node(e) {
+        Node::Var(v) => other.get(&v).copied().unwrap_or(e),
+        node => exprs.rebuild(node, |exprs, operand| changed_in(exprs, operand, other, memo)),
     };
-    rewrite(&from, &mut out.exprs, e, &mut HashMap::new(), &replace)
+    memo.insert(e, there);
+    there
 }
 
 /// A name for the other side.

@@ -1,5 +1,6 @@
 //! Passes over solution programs. Each keeps the meaning of a program, and takes and gives a valid one.
 
+mod cost;
 mod dead;
 mod flip;
 mod fold;

@@ -3,8 +3,9 @@
 //! As part of the program they take part in the passes: what a loop does not change of the forward kinematics is computed before
 //! it, an angle that two candidates share is taken once, and the zeros of the chain's constants cost nothing.
 
-use super::{optimise, with_body};
-use crate::ir::{Binary, Block, Expr, Exprs, Node, Program, RootKind, Stmt, Unary, Value, Var};
+use super::cost::cost;
+use super::{flip, optimise, with_body};
+use crate::ir::{Binary, Block, Expr, Exprs, Node, Program, Stmt, Unary, Value, Var};
 use crate::kernel::chain::{Frame, Link};
 use crate::run::TrueChain;
 
@@ -15,16 +16,18 @@ pub fn prepare(program: &Program, chain: &TrueChain) -> Program {
     let factors = 2 * chain.links.len() + 1;
     // At least the tip is undone; what lies beyond a sliding joint has no fixed lever.
     let first = chain.links.iter().rposition(|l| l.slides).map_or(1, |i| 2 * i + 2);
-    let cuts = (first..factors).map(|cut| prepared_at(program, chain, cut));
-    cuts.min_by_key(|p| cost(&p.exprs, &p.body)).expect("a chain has at least one joint")
+    // What mirrored roots share decides much of what a cut costs.
+    let flipped = flip(program);
+    let cut = (first..factors).min_by_key(|cut| cost(&with_offers(&flipped, chain, *cut)));
+    optimise(&with_offers(program, chain, cut.expect("a chain has at least one joint")))
 }
 
-fn prepared_at(program: &Program, chain: &TrueChain, cut: usize) -> Program {
+fn with_offers(program: &Program, chain: &TrueChain, cut: usize) -> Program {
     let mut out = with_body(program, program.exprs.clone(), program.names.clone(), Vec::new());
     let mut body = program.body.clone();
     block(&mut body, &mut out, chain, cut, &mut Vec::new());
     out.body = body;
-    optimise(&out)
+    out
 }
 
 /// `pairs` are the names of cosines and sines that roots are bound to around the block.
@@ -249,36 +252,4 @@ fn inverse(frame: &Frame) -> Frame {
     let p = &frame.position;
     let position = rotation.map(|row| -(row[0] * p[0] + row[1] * p[1] + row[2] * p[2]));
     Frame { rotation, position }
-}
-
-/// Operations of a block, each counted as often as loops run it when all roots exist.
-fn cost(exprs: &Exprs, block: &Block) -> usize {
-    let each = |stmt: &Stmt| {
-        let mut own = 0;
-        crate::ir::exprs_of(stmt, |e| own += operations(exprs, e));
-        let inner = match stmt {
-            Stmt::ForEach { kind, body, .. } => {
-                let times = match kind {
-                    RootKind::Align | RootKind::Half => 1,
-                    RootKind::Conic => 3,
-                    _ => 2,
-                };
-                times * cost(exprs, body)
-            }
-            Stmt::IfZero { then, otherwise, .. } => cost(exprs, then).max(cost(exprs, otherwise)),
-            Stmt::Fallback { first, .. } => cost(exprs, first),
-            _ => 0,
-        };
-        own + inner
-    };
-    block.iter().map(each).sum()
-}
-
-fn operations(exprs: &Exprs, e: Expr) -> usize {
-    let own = match exprs.node(e) {
-        Node::Binary(Binary::AngleOf, ..) | Node::Unary(Unary::Sin | Unary::Cos, _) => 40,
-        Node::Binary(Binary::Div, ..) | Node::Unary(Unary::Sqrt, _) => 10,
-        node => usize::from(!node.is_leaf()),
-    };
-    own + exprs.node(e).operands().map(|x| operations(exprs, x)).sum::<usize>()
 }
