@@ -4,11 +4,10 @@ use std::path::Path;
 
 use robotc_core::diag::{Diagnostics, Sources};
 use robotc_core::spec::{self, InitOptions};
-use robotc_core::system::MemorySystem;
 use robotc_core::urdf::{self, LoadOptions};
 use robotc_core::{joint_limits as limits_file, mesh as mesh_file, srdf as srdf_file};
 
-use crate::spec::{FILES, no_parameters};
+use crate::surroundings::{no_parameters, shown, surroundings};
 
 /// Any bytes as a URDF file: findings or a model, and from a model a specification that loads.
 pub(crate) fn urdf(bytes: &[u8]) {
@@ -78,18 +77,4 @@ pub(crate) fn mesh(bytes: &[u8]) {
             assert!(loaded.mesh.vertices.iter().all(|v| v.coords.iter().all(|x| x.is_finite())));
         }
     }
-}
-
-/// The files that descriptions and specifications can refer to.
-pub(crate) fn surroundings() -> MemorySystem {
-    let mut system = MemorySystem::new();
-    for (name, text) in FILES {
-        system.insert(*name, *text);
-    }
-    system
-}
-
-/// Every finding has a place that can be shown.
-pub(crate) fn shown(found: &Diagnostics, sources: &Sources) {
-    assert!(found.is_empty() || !found.to_plain_text(sources).is_empty());
 }

@@ -8,6 +8,7 @@ mod artefact;
 mod description;
 mod program;
 mod spec;
+mod surroundings;
 
 pub use artefact::wrapped;
 

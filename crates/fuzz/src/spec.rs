@@ -3,27 +3,10 @@
 use std::path::Path;
 
 use robotc_core::diag::Sources;
-use robotc_core::spec::{self, ParameterTable};
+use robotc_core::spec;
 use robotc_kb::{Graph, Project};
 
-use crate::description::{shown, surroundings};
-
-/// Files beside the specification, by the names that those of `tests/specs` use.
-pub(crate) const FILES: &[(&str, &str)] = &[
-    ("files/arm.urdf", include_str!("../../../tests/specs/files/arm.urdf")),
-    ("files/arm.srdf", include_str!("../../../tests/specs/files/arm.srdf")),
-    ("files/joint_limits.yaml", include_str!("../../../tests/specs/files/joint_limits.yaml")),
-    ("files/small.robot.toml", include_str!("../../../tests/specs/files/small.robot.toml")),
-    ("files/semantic.robot.toml", include_str!("../../../tests/specs/files/semantic.robot.toml")),
-    ("files/two_arms.robot.toml", include_str!("../../../tests/specs/files/two_arms.robot.toml")),
-    ("files/wedge.obj", include_str!("../../../tests/specs/files/wedge.obj")),
-    ("files/flat.obj", include_str!("../../../tests/specs/files/flat.obj")),
-];
-
-/// A table of parameters in which no kind is known.
-pub(crate) fn no_parameters() -> ParameterTable {
-    ParameterTable { kinds: Vec::new() }
-}
+use crate::surroundings::{shown, surroundings};
 
 /// Any bytes as a robot and as a task specification: findings, or a value and the graph of its artefacts.
 pub(crate) fn spec(bytes: &[u8]) {

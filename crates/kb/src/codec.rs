@@ -2,8 +2,19 @@
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use thiserror::Error;
 
-use crate::kind::DecodeError;
+/// Bytes that are not an artefact of the kind.
+#[derive(Debug, Clone, Error, PartialEq, Eq)]
+#[error("not a valid artefact: {0}")]
+pub struct DecodeError(String);
+
+impl DecodeError {
+    /// With the reason.
+    pub fn new(reason: impl Into<String>) -> Self {
+        Self(reason.into())
+    }
+}
 
 /// The bytes of a value. Equal values give equal bytes; use no maps without an order, and no `usize`.
 pub fn encode<T: Serialize>(value: &T) -> Vec<u8> {

@@ -7,110 +7,17 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
-use thiserror::Error;
-
 use crate::context::{Context, Shard};
-use crate::depot::{Depot, DepotError, pieces};
+use crate::depot::{Depot, pieces};
 use crate::explain::{Reason, reason};
 use crate::graph::{Graph, NodeIdx};
+use crate::observer::{BuildError, Event, Observer};
 use crate::record::KeyRecord;
-use crate::resolve::{Knowledge, Known, LoadError};
+use crate::resolve::{Knowledge, Known};
 use crate::store::{NewArtefact, Store, StoreError, Writer};
 
 /// The program, as artefacts record it.
 const PROVENANCE: &str = concat!("robotc ", env!("CARGO_PKG_VERSION"));
-
-/// Why an artefact could not be computed.
-#[derive(Debug, Error)]
-pub enum BuildError {
-    /// The caller asked to stop.
-    #[error("interrupted")]
-    Cancelled,
-    /// The inputs have no such artefact; the text says why.
-    #[error("{0}")]
-    Impossible(String),
-    /// The artefact failed its own check: a bug of the kind, and nothing was stored.
-    #[error("the result failed its check and was not stored: {0}")]
-    Check(String),
-    /// Other processes have not done their shards yet.
-    #[error("{missing} of {pieces} pieces are still to be computed by others")]
-    Unfinished {
-        /// Pieces that are not there.
-        missing: usize,
-        /// Pieces in all.
-        pieces: usize,
-    },
-    /// An input could not be loaded.
-    #[error(transparent)]
-    Load(#[from] LoadError),
-    /// The store failed.
-    #[error(transparent)]
-    Store(#[from] StoreError),
-    /// The depot of pieces failed.
-    #[error(transparent)]
-    Depot(#[from] DepotError),
-}
-
-/// What happens while compiling.
-#[derive(Debug, Clone, Copy)]
-pub enum Event<'a> {
-    /// Another process is computing; this one waits for it.
-    Waiting,
-    /// An artefact is being computed.
-    Started {
-        /// Name of the kind.
-        kind: &'static str,
-        /// What it is about.
-        subject: &'a str,
-        /// Why.
-        reason: &'a Reason,
-    },
-    /// So much of an artefact is computed. Events may come from several threads and out of order.
-    Progress {
-        /// Name of the kind.
-        kind: &'static str,
-        /// What it is about.
-        subject: &'a str,
-        /// Items done.
-        done: u64,
-        /// Items in all.
-        total: u64,
-    },
-    /// An artefact is stored.
-    Stored {
-        /// Name of the kind.
-        kind: &'static str,
-        /// What it is about.
-        subject: &'a str,
-        /// Number of bytes.
-        size: usize,
-    },
-    /// An artefact could not be computed.
-    Failed {
-        /// Name of the kind.
-        kind: &'static str,
-        /// What it is about.
-        subject: &'a str,
-        /// Why.
-        error: &'a BuildError,
-    },
-}
-
-/// Watches a compilation and may stop it. Called from several threads.
-pub trait Observer: Sync {
-    /// Something happened.
-    fn event(&self, event: Event<'_>);
-
-    /// Whether to stop; asked often.
-    fn cancelled(&self) -> bool {
-        false
-    }
-}
-
-/// Watches nothing.
-impl Observer for () {
-    fn event(&self, _event: Event<'_>) {}
-}
 
 /// What became of a node.
 #[derive(Debug)]

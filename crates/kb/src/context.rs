@@ -11,11 +11,11 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::codec;
-use crate::compile::{BuildError, Event, Observer};
 use crate::depot::{Depot, pieces};
 use crate::graph::Dep;
 use crate::key::Key;
 use crate::kind::Kind;
+use crate::observer::{BuildError, Event, Observer};
 use crate::resolve::Knowledge;
 
 /// How often a parallel map reports its progress, at most.

@@ -11,17 +11,17 @@ use std::any::Any;
 use std::sync::Arc;
 
 use robotc_core::spec::Parameter;
-use thiserror::Error;
 
+pub use crate::codec::DecodeError;
 use crate::graph::{PlanError, Planner};
 use crate::parameters::Parameters;
 use crate::project::{Project, Subject};
 use crate::record::Parts;
 
 #[cfg(feature = "build")]
-pub use crate::compile::BuildError;
-#[cfg(feature = "build")]
 pub use crate::context::Context;
+#[cfg(feature = "build")]
+pub use crate::observer::BuildError;
 
 /// On which machines equal keys give equal bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,18 +30,6 @@ pub enum Portability {
     Portable,
     /// On those with the same processor architecture and system; both are part of the key.
     SameTarget,
-}
-
-/// Bytes that are not an artefact of the kind.
-#[derive(Debug, Clone, Error, PartialEq, Eq)]
-#[error("not a valid artefact: {0}")]
-pub struct DecodeError(String);
-
-impl DecodeError {
-    /// With the reason.
-    pub fn new(reason: impl Into<String>) -> Self {
-        Self(reason.into())
-    }
 }
 
 /// A kind of artefact.

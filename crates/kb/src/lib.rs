@@ -28,6 +28,8 @@ pub mod key;
 pub mod kind;
 pub mod kinds;
 pub mod lock;
+#[cfg(feature = "build")]
+pub mod observer;
 pub mod os;
 pub mod parameters;
 pub mod project;
@@ -37,7 +39,7 @@ pub mod resolve;
 pub mod store;
 
 #[cfg(feature = "build")]
-pub use compile::{CompileReport, Event, Observer, Outcome, build_node, compile};
+pub use compile::{CompileReport, Outcome, build_node, compile};
 #[cfg(feature = "build")]
 pub use context::Shard;
 pub use depot::Depot;
@@ -47,6 +49,8 @@ pub use key::{ContentHash, Key, RecipeId};
 pub use kind::{Build, BuildError, Context};
 pub use kind::{DecodeError, Kind, Portability};
 pub use lock::{LockFile, Locked};
+#[cfg(feature = "build")]
+pub use observer::{Event, Observer};
 pub use parameters::{Given, Parameters};
 pub use project::Project;
 pub use resolve::{Knowledge, LoadError};

@@ -2,9 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::codec;
+use crate::codec::{self, DecodeError};
 use crate::key::{Canonical, Key, KeyHasher, NotFinite, RecipeId};
-use crate::kind::DecodeError;
 
 /// Where a part of a key comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

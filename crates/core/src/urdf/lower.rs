@@ -4,7 +4,7 @@ use super::draft::{Draft, JointKind};
 use super::meshes::MeshSource;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::model::{
-    DynamicLimits, Geometry, Inertial, JointMotion, ModelError, Origin, RobotBuilder, RobotModel, Shape,
+    DynamicLimits, Geometry, Inertial, JointMotion, ModelError, Origin, RobotBuilder, RobotModel,
 };
 
 /// The model of `robot`, which is `draft` read back. Meshes come from `meshes`.
@@ -90,17 +90,6 @@ fn inertial(inertial: &urdf_rs::Inertial) -> Inertial {
         mass: inertial.mass.value,
         inertia: [i.ixx, i.ixy, i.ixz, i.iyy, i.iyz, i.izz],
     }
-}
-
-/// The primitive shape, or `None` for a mesh.
-pub(super) fn primitive(geometry: &urdf_rs::Geometry) -> Option<Shape> {
-    Some(match *geometry {
-        urdf_rs::Geometry::Box { size } => Shape::Box { size: *size },
-        urdf_rs::Geometry::Cylinder { radius, length } => Shape::Cylinder { radius, length },
-        urdf_rs::Geometry::Capsule { radius, length } => Shape::Capsule { radius, length },
-        urdf_rs::Geometry::Sphere { radius } => Shape::Sphere { radius },
-        urdf_rs::Geometry::Mesh { .. } => return None,
-    })
 }
 
 /// Whether what was read back has the parts that were written.

@@ -8,7 +8,6 @@ use nalgebra::Vector3;
 
 use super::draft::{Draft, GeometryDraft, ShapeDraft};
 use super::grouped::{Grouped, and_others};
-use super::lower::primitive;
 use super::resolve::{Resolved, is_away, resolve};
 use super::{LoadOptions, MeshPolicy};
 use crate::diag::{Diagnostic, Diagnostics, Span};
@@ -210,4 +209,15 @@ impl<'a> MeshSource<'a> {
         names.reverse();
         names
     }
+}
+
+/// The primitive shape, or `None` for a mesh.
+fn primitive(geometry: &urdf_rs::Geometry) -> Option<Shape> {
+    Some(match *geometry {
+        urdf_rs::Geometry::Box { size } => Shape::Box { size: *size },
+        urdf_rs::Geometry::Cylinder { radius, length } => Shape::Cylinder { radius, length },
+        urdf_rs::Geometry::Capsule { radius, length } => Shape::Capsule { radius, length },
+        urdf_rs::Geometry::Sphere { radius } => Shape::Sphere { radius },
+        urdf_rs::Geometry::Mesh { .. } => return None,
+    })
 }

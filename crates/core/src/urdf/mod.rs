@@ -81,7 +81,8 @@ fn expanded(
     options: &LoadOptions,
     found: &mut Diagnostics,
 ) -> Option<Element> {
-    let (expanded, from_xacro) = xacro::expand(system, sources, path, root, options);
+    let given = xacro::Given { packages: &options.packages, arguments: &options.arguments };
+    let (expanded, from_xacro) = xacro::expand(system, sources, path, root, given);
     let failed = from_xacro.has_errors();
     found.extend(from_xacro);
     (!failed).then_some(expanded)

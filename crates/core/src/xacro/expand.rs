@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use super::Given;
 use super::scope::{Macro, Property, Scope, parameters};
 use super::value::Value;
 use crate::diag::{Diagnostic, Diagnostics, Severity, Sources, Span};
 use crate::system::System;
-use crate::urdf::LoadOptions;
 use crate::xml::{self, Attribute, Element, Node};
 
 /// Deepest nesting of elements, macro calls and properties together.
@@ -27,7 +27,7 @@ const MOST_ERRORS: usize = 40;
 /// The state of an expansion.
 pub(super) struct Expander<'a> {
     pub(super) system: &'a dyn System,
-    pub(super) options: &'a LoadOptions,
+    pub(super) packages: &'a BTreeMap<String, PathBuf>,
     sources: &'a mut Sources,
     /// The file being read and those that include it, outermost first.
     files: Vec<PathBuf>,
@@ -51,14 +51,14 @@ impl<'a> Expander<'a> {
         system: &'a dyn System,
         sources: &'a mut Sources,
         path: &Path,
-        options: &'a LoadOptions,
+        given: Given<'a>,
     ) -> Self {
         Self {
             system,
-            options,
+            packages: given.packages,
             sources,
             files: vec![path.to_owned()],
-            arguments: options.arguments.clone(),
+            arguments: given.arguments.clone(),
             macros: BTreeMap::new(),
             scopes: vec![Scope::default()],
             depth: 0,

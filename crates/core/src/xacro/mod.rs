@@ -18,12 +18,21 @@ mod syntax;
 mod text;
 mod value;
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 use crate::diag::{Diagnostics, Sources};
 use crate::system::System;
-use crate::urdf::LoadOptions;
 use crate::xml::Element;
+
+/// What an expansion is given beside the file.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Given<'a> {
+    /// Folders of packages, by name.
+    pub(crate) packages: &'a BTreeMap<String, PathBuf>,
+    /// Values of arguments; they override the defaults of the file.
+    pub(crate) arguments: &'a BTreeMap<String, String>,
+}
 
 /// `root`, the tree of the xacro file at `path`, expanded; and what is wrong with it.
 pub(crate) fn expand(
@@ -31,9 +40,9 @@ pub(crate) fn expand(
     sources: &mut Sources,
     path: &Path,
     root: &Element,
-    options: &LoadOptions,
+    given: Given<'_>,
 ) -> (Element, Diagnostics) {
-    expand::Expander::new(system, sources, path, options).run(root)
+    expand::Expander::new(system, sources, path, given).run(root)
 }
 
 #[cfg(test)]

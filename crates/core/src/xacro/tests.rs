@@ -16,8 +16,9 @@ fn expanded(files: &[(&str, &str)]) -> (String, String) {
     let mut sources = Sources::new();
     let path = Path::new("main.xacro");
     let (root, mut found) = xml::load(&system, &mut sources, path);
-    let options = LoadOptions::default();
-    let (root, from_xacro) = expand(&system, &mut sources, path, &root.unwrap(), &options);
+    let (packages, arguments) = (BTreeMap::new(), BTreeMap::new());
+    let given = Given { packages: &packages, arguments: &arguments };
+    let (root, from_xacro) = expand(&system, &mut sources, path, &root.unwrap(), given);
     found.extend(from_xacro);
     let mut text = String::new();
     for node in &root.children {

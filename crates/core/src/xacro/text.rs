@@ -85,7 +85,7 @@ impl Expander<'_> {
             "find" => {
                 let file = self.file().to_path_buf();
                 let main = self.main_file().to_path_buf();
-                let find = |from: &Path| package_folder(self.system, &self.options.packages, from, rest);
+                let find = |from: &Path| package_folder(self.system, self.packages, from, rest);
                 match find(&file).or_else(|| find(&main)) {
                     Some(folder) => Ok(Value::Text(folder.display().to_string())),
                     None => Err(format!("package `{rest}` is not known; say where it is under [packages]")),
@@ -154,7 +154,7 @@ impl Expander<'_> {
         let name = name.strip_prefix("file://").unwrap_or(name);
         if let Some(reference) = name.strip_prefix("package://") {
             let (package, rest) = reference.split_once('/').unwrap_or((reference, ""));
-            if let Some(folder) = package_folder(self.system, &self.options.packages, self.file(), package) {
+            if let Some(folder) = package_folder(self.system, self.packages, self.file(), package) {
                 return normal(&folder.join(rest));
             }
         }

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use super::{Depot, TransferError, fetch_inputs, put_away};
-use crate::compile::{BuildError, Observer, build_node};
+use crate::compile::build_node;
 use crate::context::Shard;
 use crate::graph::{Graph, NodeIdx};
 use crate::key::Key;
+use crate::observer::{BuildError, Observer};
 use crate::store::Store;
 
 /// What a worker did.

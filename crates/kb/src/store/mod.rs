@@ -39,8 +39,8 @@ pub use rebuild::Rebuilt;
 pub use transfer::Transfer;
 pub use verify::{Finding, Repair, Verification};
 
+use crate::codec::DecodeError;
 use crate::key::{ContentHash, Key};
-use crate::kind::DecodeError;
 use crate::record::KeyRecord;
 
 /// Why a store could not do what was asked.

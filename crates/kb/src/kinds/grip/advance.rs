@@ -10,8 +10,9 @@ use robotc_core::Pose;
 use robotc_core::geom::{ConvexPart, ConvexParts, separation};
 
 use super::hand::Hand;
-use super::strategy::TOUCH;
 
+/// A gap smaller than this is a touch, metres.
+pub(crate) const TOUCH: f64 = 3e-4;
 /// Steps of an advance before it is taken as touching; each covers most of the gap that is left.
 const MOST_STEPS: usize = 64;
 /// How far below the distance a gap may be: a rough gap costs a step more now and then, a precise one costs every step.

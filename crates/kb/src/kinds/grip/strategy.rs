@@ -8,7 +8,7 @@ use robotc_core::Pose;
 use robotc_core::geom::{ConvexParts, any_within, separation};
 use robotc_planning::grasp::tangents;
 
-use super::advance::{close_drive, first_touch};
+use super::advance::{TOUCH, close_drive, first_touch};
 use super::hand::Hand;
 
 /// Where and how a hand comes in.
@@ -60,8 +60,6 @@ pub(crate) enum Miss {
     Inside,
 }
 
-/// A gap smaller than this is a touch, metres.
-pub(crate) const TOUCH: f64 = 3e-4;
 /// Rounds of closing and centring; the rest gap halves at least with each.
 const CENTRING_ROUNDS: usize = 12;
 
