@@ -56,7 +56,6 @@ pub struct Cage {
 }
 
 /// What a caging set is computed from.
-#[cfg_attr(not(feature = "build"), expect(dead_code, reason = "artefacts that only generators load"))]
 pub struct Inputs {
     gripper: GripperInputs,
     article: Mechanism,
