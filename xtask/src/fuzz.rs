@@ -15,7 +15,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context, ensure};
 
-use crate::test::root;
+use crate::workspace::root;
 
 /// A target: its name, and the endings of files that are its seeds.
 type Target = (&'static str, &'static [&'static str]);
@@ -169,7 +169,7 @@ impl Campaign {
             let folder = self.work.display().to_string();
             let build =
                 ["cargo", "run", "--quiet", "--package", "robotc-fuzz", "--example", "artefacts", "--"];
-            crate::test::execute(&[&build[..], &[&folder]].concat())?;
+            crate::workspace::execute(&[&build[..], &[&folder]].concat())?;
         }
         Ok(())
     }

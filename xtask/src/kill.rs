@@ -22,11 +22,11 @@ pub(crate) fn run(args: &[String]) -> anyhow::Result<()> {
     let program = match args.get(1) {
         Some(program) => std::path::absolute(program)?,
         None => {
-            crate::test::execute(&["cargo", "build", "--release", "--locked", "-p", "robotc"])?;
-            crate::test::root().join("target/release/robotc")
+            crate::workspace::execute(&["cargo", "build", "--release", "--locked", "-p", "robotc"])?;
+            crate::workspace::root().join("target/release/robotc")
         }
     };
-    let specification = crate::test::root().join(SPECIFICATION);
+    let specification = crate::workspace::root().join(SPECIFICATION);
     let folder = tempfile::tempdir()?;
 
     let undisturbed = Trial::new(&program, &specification, folder.path().join("undisturbed"));

@@ -11,6 +11,7 @@ mod python;
 mod seeds;
 mod test;
 mod tidy;
+mod workspace;
 
 use std::process::ExitCode;
 

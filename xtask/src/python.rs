@@ -17,7 +17,7 @@ const PACKAGES: &[&str] = &[
 pub(crate) fn run(args: &[String]) -> anyhow::Result<()> {
     let environment = environment()?;
     let python = environment.join("bin").join("python");
-    let wheels = crate::test::root().join("target").join("wheels");
+    let wheels = crate::workspace::root().join("target").join("wheels");
     if wheels.exists() {
         std::fs::remove_dir_all(&wheels)?;
     }
@@ -50,7 +50,7 @@ pub(crate) fn run(args: &[String]) -> anyhow::Result<()> {
 
 /// The environment's folder; made and filled when it is not there or its packages changed.
 fn environment() -> anyhow::Result<PathBuf> {
-    let folder = crate::test::root().join("target").join("python");
+    let folder = crate::workspace::root().join("target").join("python");
     let mark = folder.join("robotc-packages.txt");
     let wanted = PACKAGES.join("\n");
     if std::fs::read_to_string(&mark).is_ok_and(|installed| installed == wanted) {
@@ -70,7 +70,7 @@ fn environment() -> anyhow::Result<PathBuf> {
 fn call(command: &mut Command) -> anyhow::Result<()> {
     let shown = format!("{command:?}");
     let status = command
-        .current_dir(crate::test::root())
+        .current_dir(crate::workspace::root())
         .status()
         .with_context(|| format!("could not start {shown}"))?;
     if !status.success() {

@@ -69,7 +69,7 @@ const LONGEST_FILE: usize = 1000;
 
 /// Checks all rules; the error lists every breach as `file:line: why`.
 pub(crate) fn run(_args: &[String]) -> anyhow::Result<()> {
-    let root = crate::test::root();
+    let root = crate::workspace::root();
     let mut breaches = Vec::new();
     for rule in RULES {
         for folder in rule.folders {
@@ -102,7 +102,7 @@ fn check_generators(breaches: &mut Vec<String>) -> anyhow::Result<()> {
     for (package, has_generators) in [("robotc-embedded", false), ("robotc", true)] {
         let tree = Command::new(env!("CARGO"))
             .args(["tree", "--locked", "--package", package, "--edges", "features,normal"])
-            .current_dir(crate::test::root())
+            .current_dir(crate::workspace::root())
             .output()?;
         if !tree.status.success() {
             bail!("cargo tree failed: {}", String::from_utf8_lossy(&tree.stderr));
