@@ -7,7 +7,7 @@ use robotc_ikgen::backend::{RustOptions, rust_source};
 use robotc_ikgen::ir::Program;
 use robotc_ikgen::kernel::chain::Frame;
 use robotc_ikgen::passes;
-use robotc_ikgen::run::{Bytecode, Candidate, TrueChain, interpreter};
+use robotc_ikgen::run::{Bytecode, Candidate, TrueChain, Verdict, interpreter};
 
 /// Candidates that are compared between the engines.
 const MOST_CANDIDATES: usize = 1000;
@@ -45,7 +45,7 @@ const POSE: Frame =
 const FREE: [f64; 9] = [0.1, -0.2, 0.3, -0.4, 0.5, -0.6, 0.7, -0.8, 0.9];
 
 /// The first candidates that a run offers, as bits; every third is accepted.
-fn candidates(run: impl FnOnce(&mut dyn FnMut(&[[f64; 2]]) -> bool) -> usize) -> Vec<Vec<[u64; 2]>> {
+fn candidates(run: impl FnOnce(&mut dyn FnMut(&[[f64; 2]]) -> Verdict) -> usize) -> Vec<Vec<[u64; 2]>> {
     let mut seen = Vec::new();
     let mut count = 0;
     run(&mut |steps: &[[f64; 2]]| {
@@ -55,7 +55,7 @@ fn candidates(run: impl FnOnce(&mut dyn FnMut(&[[f64; 2]]) -> bool) -> usize) ->
             let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
             seen.push(steps.iter().map(|step| step.map(bits)).collect());
         }
-        count % 3 == 0
+        if count % 3 == 0 { Verdict::Accepted } else { Verdict::Wrong }
     });
     seen
 }

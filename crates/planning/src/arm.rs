@@ -1,10 +1,9 @@
 //! An arm as planners need it: its configuration space, limits, tool pose and inverse kinematics.
 
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use nalgebra::{Matrix6, Matrix6xX, Point3, SVector, Vector6};
-use robotc_core::ik::{IkSolutions, InverseKinematics};
+use robotc_core::ik::{IkSolutions, InverseKinematics, VariableRange};
 use robotc_core::model::{ChainError, ChainMotion};
 use robotc_core::robot::Robot;
 use robotc_core::{Configuration, DofIdx, Kinematics, Pose, SerialChain};
@@ -230,13 +229,8 @@ impl ArmModel {
         let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
         for solution in scratch.iter() {
             let values = self.space.axes().iter().zip(&self.turns).zip(solution.iter().zip(near));
-            let within: Option<Vec<f64>> = values
-                .map(
-                    |((axis, &turns), (&value, &near))| {
-                        if turns { nearest_alias(axis, value, near) } else { within(axis, value) }
-                    },
-                )
-                .collect();
+            let within: Option<Vec<f64>> =
+                values.map(|((axis, &turns), (&value, &near))| alias(axis, turns, value, near)).collect();
             match within {
                 Some(q) => found.push((self.space.squared_distance(&q, near), q)),
                 None => outside += 1,
@@ -247,32 +241,13 @@ impl ArmModel {
     }
 }
 
-/// Rounding at a limit is not a violation.
-const LIMIT_SLACK: f64 = 1e-9;
-
-fn within(axis: &Axis, value: f64) -> Option<f64> {
-    let inside = axis.lower - LIMIT_SLACK <= value && value <= axis.upper + LIMIT_SLACK;
-    inside.then(|| value.clamp(axis.lower, axis.upper))
-}
-
-/// The angle equal to `value` modulo 2 pi that is within the limits and nearest to `near`.
-fn nearest_alias(axis: &Axis, value: f64, near: f64) -> Option<f64> {
-    if axis.wraps {
+/// The value within the limits of an axis, of angles the alias nearest to `near`.
+fn alias(axis: &Axis, turns: bool, value: f64, near: f64) -> Option<f64> {
+    if turns && axis.wraps {
         return Some(value);
     }
-    let best = value + TAU * ((near - value) / TAU).round();
-    let mut found: Option<f64> = None;
-    // The nearest may be outside and another alias inside, on the side where the limits are.
-    let first = ((axis.lower - LIMIT_SLACK - best) / TAU).ceil() as i64;
-    let last = ((axis.upper + LIMIT_SLACK - best) / TAU).floor() as i64;
-    for turns in first.max(-8)..=last.min(8) {
-        if let Some(alias) = within(axis, best + TAU * turns as f64)
-            && found.is_none_or(|f| (alias - near).abs() < (f - near).abs())
-        {
-            found = Some(alias);
-        }
-    }
-    found
+    let motion = if turns { ChainMotion::Revolute } else { ChainMotion::Prismatic };
+    VariableRange { motion, lower: axis.lower, upper: axis.upper }.nearest(value, near)
 }
 
 #[cfg(test)]
@@ -280,16 +255,6 @@ mod tests {
     use super::*;
     use crate::testbed::{self, REST};
     use proptest::prelude::*;
-
-    #[test]
-    fn aliases_keep_to_the_limits() {
-        let axis = Axis::bounded(-4.0, 4.0);
-        assert_eq!(nearest_alias(&axis, 3.0, -3.0), Some(3.0 - TAU));
-        assert_eq!(nearest_alias(&axis, 3.0, 2.0), Some(3.0));
-        assert_eq!(nearest_alias(&Axis::bounded(3.5, 6.0), -1.0, 0.0), Some(TAU - 1.0));
-        assert_eq!(nearest_alias(&Axis::bounded(-1.0, 1.0), 2.0, 0.0), None);
-        assert_eq!(nearest_alias(&Axis::bounded(-1.0, 1.0), 1.0 + 1e-12, 0.0), Some(1.0));
-    }
 
     #[test]
     fn the_reach_is_that_of_the_stretched_arm() {

@@ -5,14 +5,13 @@ use std::path::PathBuf;
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
-use robotc_core::ik::{IkSolutions, InverseKinematics as _};
 use robotc_core::urdf::{self, LoadOptions, MeshPolicy};
 use robotc_core::{Kinematics, SerialChain, Sources};
 use robotc_ikgen::{Compiled, Options, RustOptions, Solver, compile};
 use robotc_kb::os::OsSystem;
 
-use crate::arrays;
 use crate::errors::{CompileError, accept};
+use crate::solving::{self, Wanted, WantedLimits};
 
 /// A solver of one chain, usable at once, and its source.
 #[pyclass(frozen, module = "robotc.ik")]
@@ -83,38 +82,31 @@ impl GeneratedSolver {
         self.compiled.free.iter().map(|&i| variables[i].name.clone()).collect()
     }
 
-    /// A row for each solution. `pose` is `base_from_tip`, a 4 x 4 matrix; `free` the values of the free joints.
-    #[pyo3(signature = (pose, free = Vec::new()))]
+    /// A row for each solution. `pose` is `base_from_tip`, a 4 x 4 matrix; `free` the values of the free joints; the rest chooses
+    /// among the solutions.
+    #[pyo3(signature = (
+        pose, free = Vec::new(), *, limits = WantedLimits::Described(false), near = None, weights = Vec::new(),
+        all_aliases = false, max_solutions = None
+    ), text_signature = "(self, pose, free=(), *, limits=False, near=None, weights=(), all_aliases=False, max_solutions=None)")]
+    #[allow(clippy::too_many_arguments, reason = "they are keywords")]
     fn solve<'py>(
         &self,
         py: Python<'py>,
         pose: PyReadonlyArray2<'py, f64>,
         free: Vec<f64>,
+        limits: WantedLimits,
+        near: Option<Vec<f64>>,
+        weights: Vec<f64>,
+        all_aliases: bool,
+        max_solutions: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let expected = self.compiled.free.len();
-        if free.len() != expected {
-            return Err(PyValueError::new_err(format!(
-                "expected {expected} free values, got {}",
-                free.len()
-            )));
-        }
-        let mut solutions = IkSolutions::new();
-        self.solver.solve(&arrays::pose(&pose)?, &free, &mut solutions);
-        let rows: Vec<Vec<f64>> = solutions.iter().map(<[f64]>::to_vec).collect();
-        Ok(arrays::rows(py, &rows, self.compiled.chain().variables.len()))
+        let wanted = Wanted { limits, near, weights, all_aliases, max_solutions };
+        solving::solve(py, &self.solver, &self.free_joints(), &pose, &free, wanted)
     }
 
     /// `base_from_tip` at these joint values, as a 4 x 4 matrix.
     fn fk<'py>(&self, py: Python<'py>, joints: Vec<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let chain = self.compiled.chain();
-        if joints.len() != chain.variables.len() {
-            let expected = chain.variables.len();
-            return Err(PyValueError::new_err(format!(
-                "expected {expected} joint values, got {}",
-                joints.len()
-            )));
-        }
-        Ok(arrays::matrix(py, &chain.forward(&joints)))
+        solving::forward(py, self.compiled.chain(), &joints)
     }
 
     /// Writes the solver to a file: Rust (`.rs`), C with its header beside it (`.c`), or the solution program (`.ik`).

@@ -12,6 +12,7 @@ mod knowledge;
 mod long;
 mod plan;
 mod robot;
+mod solving;
 mod task;
 
 use pyo3::prelude::*;

@@ -28,6 +28,25 @@ def test_solutions_reach_the_pose(solver):
     assert np.abs(solutions - joints).max(axis=1).min() < 1e-6
 
 
+def test_preferences(solver):
+    joints = np.array([0.1, -0.4, 0.3, -1.8, 0.2, 1.7, 0.5])
+    given = solver.joint_names.index(solver.free_joints[0])
+    pose, free = solver.fk(joints), [joints[given]]
+    everything = solver.solve(pose, free)
+    within = solver.solve(pose, free, limits=True)
+    assert 0 < len(within) < len(everything)
+    nearest = solver.solve(pose, free, limits=True, near=joints, max_solutions=1)
+    np.testing.assert_allclose(nearest, [joints], atol=1e-6)
+    box = np.stack([joints - 0.01, joints + 0.01], axis=1)
+    assert len(solver.solve(pose, free, limits=box)) == 1
+    wide = np.tile([-4.0, 4.0], (7, 1))
+    assert len(solver.solve(pose, free, limits=wide, all_aliases=True)) > len(everything)
+    with pytest.raises(ValueError, match="near: expected 7 values, got 1"):
+        solver.solve(pose, free, near=[0.0])
+    with pytest.raises(ValueError, match="expected 1 free values"):
+        solver.solve(pose)
+
+
 def test_sources(solver, tmp_path):
     for name in ["arm.rs", "arm.c", "arm.ik"]:
         solver.write(tmp_path / name)

@@ -1,6 +1,6 @@
 //! Programs as straight runs of three-address instructions over a small register file.
 
-use super::{MOST_ROOTS, SIX_ROOTS, take};
+use super::{MOST_ROOTS, SIX_ROOTS, Verdict, take};
 use crate::ir::{Binary, Block, Expr, Node, Program, RootKind, Stmt, Unary, Value, Var};
 use crate::kernel::chain::{Frame, MAX_JOINTS};
 use crate::kernel::conic::conic;
@@ -128,13 +128,13 @@ impl Bytecode {
         self.steps.len()
     }
 
-    /// Runs the program and offers each candidate. `offer` says whether it was accepted; returns how many were.
+    /// Runs the program and offers each candidate. `offer` says what it makes of it; returns how many were accepted.
     pub fn run(
         &self,
         base_from_tip: &Frame,
         free: &[f64],
         slack: f64,
-        offer: &mut impl FnMut(&Candidate) -> bool,
+        offer: &mut impl FnMut(&Candidate) -> Verdict,
     ) -> usize {
         // The smallest file that fits, since clearing it is part of the cost of a call.
         match self.registers {
@@ -151,7 +151,7 @@ impl Bytecode {
         base_from_tip: &Frame,
         free: &[f64],
         slack: f64,
-        offer: &mut impl FnMut(&Candidate) -> bool,
+        offer: &mut impl FnMut(&Candidate) -> Verdict,
     ) -> usize {
         for i in 0..3 {
             registers[3 * i..3 * i + 3].copy_from_slice(&base_from_tip.rotation[i]);
@@ -169,7 +169,7 @@ impl Bytecode {
         x: &mut [f64; N],
         slack: f64,
         left: &mut u32,
-        offer: &mut impl FnMut(&Candidate) -> bool,
+        offer: &mut impl FnMut(&Candidate) -> Verdict,
     ) -> usize {
         // N is a power of two: the mask replaces the bounds check.
         let at = |i: u16| usize::from(i) & (N - 1);
@@ -249,7 +249,12 @@ impl Bytecode {
                         candidate.steps[variable] = [x[at(*a)], x[at(*b)]];
                         candidate.values[variable] = x[at(*value)];
                     }
-                    accepted += usize::from(offer(&candidate));
+                    let verdict = offer(&candidate);
+                    accepted += usize::from(verdict != Verdict::Wrong);
+                    if verdict == Verdict::Last {
+                        // Without roots to follow the run is over.
+                        *left = 0;
+                    }
                 }
             }
         }
@@ -266,7 +271,7 @@ impl Bytecode {
         x: &mut [f64; N],
         slack: f64,
         left: &mut u32,
-        offer: &mut impl FnMut(&Candidate) -> bool,
+        offer: &mut impl FnMut(&Candidate) -> Verdict,
     ) -> usize {
         let mut accepted = 0;
         for i in 0..roots.count() {

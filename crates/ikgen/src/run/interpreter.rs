@@ -1,19 +1,19 @@
 //! The reference interpreter: walks the program as it is written, without any preparation.
 
-use super::{MOST_ROOTS, SIX_ROOTS, take};
+use super::{MOST_ROOTS, SIX_ROOTS, Verdict, take};
 use crate::ir::{Block, Expr, Node, Program, RootKind, Stmt, Value};
 use crate::kernel::chain::{Frame, MAX_JOINTS};
 use crate::kernel::six::six_of;
 
 /// Runs `program` and offers each emitted candidate: `[cos, sin]` or `[length, 0]` of each variable.
 ///
-/// `offer` says whether the candidate was accepted; returns how many were.
+/// `offer` says what it makes of the candidate; returns how many were accepted.
 pub fn run(
     program: &Program,
     base_from_tip: &Frame,
     free: &[f64],
     slack: f64,
-    offer: &mut dyn FnMut(&[[f64; 2]]) -> bool,
+    offer: &mut dyn FnMut(&[[f64; 2]]) -> Verdict,
 ) -> usize {
     let mut run = Run {
         program,
@@ -36,7 +36,7 @@ struct Run<'a> {
     slack: f64,
     vars: Vec<f64>,
     left: u32,
-    offer: &'a mut dyn FnMut(&[[f64; 2]]) -> bool,
+    offer: &'a mut dyn FnMut(&[[f64; 2]]) -> Verdict,
     accepted: usize,
 }
 
@@ -93,7 +93,11 @@ impl Run<'_> {
                             Value::Length(x) => [self.value(x), 0.0],
                         };
                     }
-                    self.accepted += usize::from((self.offer)(&steps[..values.len()]));
+                    let verdict = (self.offer)(&steps[..values.len()]);
+                    self.accepted += usize::from(verdict != Verdict::Wrong);
+                    if verdict == Verdict::Last {
+                        self.left = 0;
+                    }
                 }
             }
         }

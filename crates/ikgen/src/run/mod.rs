@@ -31,6 +31,17 @@ pub(crate) fn take(left: &mut u32, count: u32) -> bool {
     enough
 }
 
+/// What is made of a candidate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// It does not reach the pose.
+    Wrong,
+    /// It does.
+    Accepted,
+    /// It does, and no other is wanted.
+    Last,
+}
+
 /// A pose as the kernel sees it.
 pub(crate) fn frame(pose: &Pose) -> Frame {
     let r = pose.rotation.to_rotation_matrix();

@@ -1,11 +1,11 @@
 //! The solver that the rest of the project uses: a loaded program, the true chain, and the check between them.
 
 use robotc_core::Pose;
-use robotc_core::ik::{IkSolutions, InverseKinematics};
+use robotc_core::ik::{IkSolutions, InverseKinematics, PreferenceError, Preferences, VariableRange};
 use robotc_core::model::SerialChain;
 
 use super::lanes::{self, LANES};
-use super::{Bytecode, Candidate, TooLarge, TrueChain, frame, interpreter};
+use super::{Bytecode, Candidate, TooLarge, TrueChain, Verdict, frame, interpreter};
 use crate::ir::{Program, TextError};
 use crate::kernel::candidate::{MOST_MISSES, WIDER, is_exact};
 use crate::kernel::chain::{Frame, MAX_JOINTS};
@@ -53,6 +53,7 @@ pub struct Solver {
     chain: TrueChain,
     engine: Engine,
     held: [bool; MAX_JOINTS],
+    ranges: Vec<VariableRange>,
 }
 
 impl Solver {
@@ -73,6 +74,7 @@ impl Solver {
             chain: true_chain,
             engine: Engine::Bytecode,
             held,
+            ranges: VariableRange::of(chain),
         })
     }
 
@@ -97,24 +99,85 @@ impl Solver {
         self.code.instructions()
     }
 
-    fn solve_frame(&self, base_from_tip: &Frame, free: &[f64], out: &mut IkSolutions) {
+    /// What values the variables may take, as described.
+    pub fn ranges(&self) -> &[VariableRange] {
+        &self.ranges
+    }
+
+    /// The solutions for a pose that are wanted, in the wanted order: within limits, nearest to a seed first, no more than so many.
+    /// Otherwise as [`solve`](InverseKinematics::solve).
+    pub fn solve_preferred(
+        &self,
+        base_from_tip: &Pose,
+        free: &[f64],
+        preferences: &Preferences,
+        out: &mut IkSolutions,
+    ) -> Result<(), PreferenceError> {
+        let ranges = preferences.ranges(&self.ranges)?;
         out.reset(self.program.variables);
+        let mut all = IkSolutions::new();
+        self.solve_until(base_from_tip, free, &mut all, &mut |solution| {
+            preferences.offer(&ranges, solution, out);
+            preferences.is_enough(out)
+        });
+        preferences.finish(&ranges, out);
+        Ok(())
+    }
+
+    /// Solutions until `enough` says so of a new one.
+    fn solve_until(
+        &self,
+        base_from_tip: &Pose,
+        free: &[f64],
+        out: &mut IkSolutions,
+        enough: &mut impl FnMut(&[f64]) -> bool,
+    ) {
+        assert_eq!(free.len(), self.program.free.len(), "one value for each free variable");
+        out.reset(self.program.variables);
+        let frame = frame(base_from_tip);
+        let mut numbers = frame.position.iter().chain(frame.rotation.iter().flatten()).chain(free);
+        if !numbers.all(|x| x.is_finite()) {
+            return;
+        }
         let wider = WIDER.into_iter().filter(|wider| *wider > self.program.slack);
         for slack in std::iter::once(self.program.slack).chain(wider) {
-            if self.attempt(base_from_tip, free, slack, out) > 0 {
+            if self.attempt(&frame, free, slack, out, enough) > 0 {
                 return;
             }
         }
     }
 
-    fn attempt(&self, base_from_tip: &Frame, free: &[f64], slack: f64, out: &mut IkSolutions) -> usize {
+    fn attempt(
+        &self,
+        base_from_tip: &Frame,
+        free: &[f64],
+        slack: f64,
+        out: &mut IkSolutions,
+        enough: &mut impl FnMut(&[f64]) -> bool,
+    ) -> usize {
         let n = self.program.variables;
-        let mut misses = 0;
+        let arm = self.chain.arm(&self.held[..n]);
+        let misses = std::cell::Cell::new(0);
+        let looks = || misses.get() < MOST_MISSES;
+        // Keeps a candidate if it is right and new.
+        let mut keep = |right: bool, values: &[f64]| {
+            if !right {
+                misses.set(misses.get() + 1);
+                return Verdict::Wrong;
+            }
+            if out.iter().any(|other| arm.same(values, other)) {
+                return Verdict::Accepted;
+            }
+            out.push(values);
+            if enough(values) { Verdict::Last } else { Verdict::Accepted }
+        };
         match self.engine {
             Engine::Bytecode => self.code.run(base_from_tip, free, slack, &mut |candidate: &Candidate| {
-                let right = misses < MOST_MISSES && self.keep(base_from_tip, candidate, out);
-                misses += usize::from(!right);
-                right
+                let mut values = candidate.values;
+                let right = looks()
+                    && (is_exact(candidate.misses)
+                        || arm.settle(base_from_tip, &candidate.steps[..n], &mut values[..n]));
+                keep(right, &values[..n])
             }),
             Engine::Interpreter => {
                 interpreter::run(&self.program, base_from_tip, free, slack, &mut |steps| {
@@ -122,45 +185,10 @@ impl Solver {
                     for (variable, value) in self.program.free.iter().zip(free) {
                         values[*variable] = *value;
                     }
-                    let right =
-                        misses < MOST_MISSES && self.settle(base_from_tip, steps, &mut values[..n], out);
-                    misses += usize::from(!right);
-                    right
+                    let right = looks() && arm.settle(base_from_tip, steps, &mut values[..n]);
+                    keep(right, &values[..n])
                 })
             }
-        }
-    }
-
-    /// Keeps a candidate if it is right and new; says whether it is right.
-    fn keep(&self, base_from_tip: &Frame, candidate: &Candidate, out: &mut IkSolutions) -> bool {
-        let n = self.program.variables;
-        let mut values = candidate.values;
-        if !is_exact(candidate.misses) {
-            return self.settle(base_from_tip, &candidate.steps[..n], &mut values[..n], out);
-        }
-        self.push(&values[..n], out);
-        true
-    }
-
-    /// As [`keep`](Self::keep), for a candidate of which nothing is known yet; `values` holds the given ones.
-    fn settle(
-        &self,
-        base_from_tip: &Frame,
-        steps: &[[f64; 2]],
-        values: &mut [f64],
-        out: &mut IkSolutions,
-    ) -> bool {
-        let right = self.chain.arm(&self.held[..values.len()]).settle(base_from_tip, steps, values);
-        if right {
-            self.push(values, out);
-        }
-        right
-    }
-
-    fn push(&self, values: &[f64], out: &mut IkSolutions) {
-        let arm = self.chain.arm(&self.held[..values.len()]);
-        if !out.iter().any(|other| arm.same(values, other)) {
-            out.push(values);
         }
     }
 }
@@ -244,13 +272,6 @@ impl InverseKinematics for Solver {
     }
 
     fn solve(&self, base_from_tip: &Pose, free: &[f64], out: &mut IkSolutions) {
-        assert_eq!(free.len(), self.program.free.len(), "one value for each free variable");
-        let frame = frame(base_from_tip);
-        let numbers = frame.position.iter().chain(frame.rotation.iter().flatten()).chain(free);
-        if numbers.clone().all(|x| x.is_finite()) {
-            self.solve_frame(&frame, free, out);
-        } else {
-            out.reset(self.program.variables);
-        }
+        self.solve_until(base_from_tip, free, out, &mut |_| false);
     }
 }

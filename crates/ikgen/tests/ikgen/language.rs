@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use robotc_ikgen::kernel::chain::Frame;
-use robotc_ikgen::run::{Bytecode, interpreter};
+use robotc_ikgen::run::{Bytecode, Verdict, interpreter};
 use robotc_ikgen::{Options, Program, compile, passes};
 
 use crate::{arms, golden};
@@ -86,11 +86,11 @@ fn programs_that_would_run_forever_end() {
     let mut offered = [0, 0];
     Bytecode::new(&program).unwrap().run(&pose, &[], 0.0, &mut |_| {
         offered[0] += 1;
-        false
+        Verdict::Wrong
     });
     interpreter::run(&program, &pose, &[], 0.0, &mut |_| {
         offered[1] += 1;
-        false
+        Verdict::Wrong
     });
     assert!(offered[0] > 10_000 && offered[0] == offered[1], "{offered:?}");
 }

@@ -7,5 +7,6 @@ mod classes;
 mod generated;
 mod golden;
 mod language;
+mod preferences;
 mod properties;
 mod real_arms;

@@ -13,8 +13,24 @@ class GeneratedSolver:
     @property
     def free_joints(self) -> list[str]:
         """Joints whose value `solve` is given."""
-    def solve(self, pose: Array, free: Sequence[float] = ()) -> Array:
-        """Solutions for `base_from_tip`, shape (solutions, joints). Angles in (-pi, pi]; limits are not applied."""
+    def solve(
+        self,
+        pose: Array,
+        free: Sequence[float] = (),
+        *,
+        limits: bool | Sequence[Sequence[float]] | Array = False,
+        near: Sequence[float] | Array | None = None,
+        weights: Sequence[float] | Array = (),
+        all_aliases: bool = False,
+        max_solutions: int | None = None,
+    ) -> Array:
+        """Solutions for `base_from_tip`, shape (solutions, joints).
+
+        By default all of them, angles in (-pi, pi], limits not applied. `limits` keeps those within the described limits
+        (`True`) or the given ones, shape (joints, 2); angles are the alias within them that is nearest to `near`, or with
+        `all_aliases` every one. `near` puts solutions nearest to it first, in a distance whose terms are weighted by `weights`.
+        No more than `max_solutions` are returned; without `near` the search stops when they are found.
+        """
     def fk(self, joints: Sequence[float]) -> Array:
         """`base_from_tip`, shape (4, 4)."""
     def write(self, path: Path) -> None:

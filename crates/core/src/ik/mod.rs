@@ -1,5 +1,9 @@
 //! What a planner or a map needs of an inverse-kinematics solver, whoever made it.
 
+mod preferences;
+
+pub use preferences::{Aliases, Limits, PreferenceError, Preferences, VariableRange};
+
 use crate::Pose;
 
 /// Joint vectors that reach one pose, in the solver's branch order.
@@ -32,6 +36,18 @@ impl IkSolutions {
     /// Number of solutions.
     pub fn len(&self) -> usize {
         self.values.len().checked_div(self.width).unwrap_or(0)
+    }
+
+    /// Keeps the first `count` solutions.
+    pub fn truncate(&mut self, count: usize) {
+        self.values.truncate(count.saturating_mul(self.width));
+    }
+
+    /// Puts the solutions in ascending order of `cost`; those of equal cost stay in their order.
+    pub fn sort_by_cost(&mut self, cost: impl Fn(&[f64]) -> f64) {
+        let mut order: Vec<(f64, &[f64])> = self.iter().map(|q| (cost(q), q)).collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        self.values = order.into_iter().flat_map(|(_, q)| q).copied().collect();
     }
 
     /// Whether the pose has no solution.
