@@ -116,8 +116,15 @@ fn absolute(description: &Path, path: &str) -> Vec<(PathBuf, bool)> {
     places
 }
 
-fn folders_above(description: &Path) -> impl Iterator<Item = &Path> {
-    description.ancestors().skip(1).take(FOLDERS_ABOVE)
+/// The folders above a description, innermost first. A relative path goes on above the folder that it is relative to.
+fn folders_above(description: &Path) -> impl Iterator<Item = PathBuf> {
+    let innermost = description.parent().map(normal);
+    let above = |folder: &PathBuf| match folder.components().next_back() {
+        Some(Component::Normal(_)) => folder.parent().map(Path::to_path_buf),
+        Some(Component::RootDir | Component::Prefix(_)) => None,
+        Some(Component::ParentDir | Component::CurDir) | None => Some(normal(&Path::new("..").join(folder))),
+    };
+    std::iter::successors(innermost, above).take(FOLDERS_ABOVE)
 }
 
 /// The same stem with the other endings that meshes have.
@@ -139,4 +146,20 @@ pub(crate) fn normal(path: &Path) -> PathBuf {
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn above(path: &str) -> Vec<String> {
+        folders_above(Path::new(path)).take(4).map(|folder| folder.display().to_string()).collect()
+    }
+
+    #[test]
+    fn folders_above_a_relative_path_go_on_above_its_start() {
+        assert_eq!(above("a/b/c.urdf"), ["a/b", "a", "", ".."]);
+        assert_eq!(above("../a/c.urdf"), ["../a", "..", "../..", "../../.."]);
+        assert_eq!(above("/a/c.urdf"), ["/a", "/"]);
+    }
 }

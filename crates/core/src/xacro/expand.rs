@@ -28,6 +28,8 @@ const MOST_ERRORS: usize = 40;
 pub(super) struct Expander<'a> {
     pub(super) system: &'a dyn System,
     pub(super) packages: &'a BTreeMap<String, PathBuf>,
+    /// Folders that `$(find)` and `$(dirname)` gave, and of which package: paths that begin with one are not relative to a file.
+    pub(super) folders: BTreeMap<PathBuf, Option<String>>,
     sources: &'a mut Sources,
     /// The file being read and those that include it, outermost first.
     files: Vec<PathBuf>,
@@ -56,6 +58,7 @@ impl<'a> Expander<'a> {
         Self {
             system,
             packages: given.packages,
+            folders: BTreeMap::new(),
             sources,
             files: vec![path.to_owned()],
             arguments: given.arguments.clone(),
@@ -225,6 +228,7 @@ impl<'a> Expander<'a> {
             let value = match attribute.value.contains('$') {
                 false => attribute.value.clone(),
                 true => match self.text_of(&attribute.value) {
+                    Ok(value) if attribute.name == "filename" => self.as_reference(value),
                     Ok(value) => value,
                     Err(message) => {
                         self.error("R0251", attribute.span, message);

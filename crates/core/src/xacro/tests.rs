@@ -1,5 +1,6 @@
 //! Expansions of small files, written out again as text.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -9,12 +10,17 @@ use crate::xml::{self, Node};
 
 /// Expands `main.xacro` of these files; the elements as text without spaces between them, and the findings.
 fn expanded(files: &[(&str, &str)]) -> (String, String) {
+    expanded_at("main.xacro", files)
+}
+
+/// Expands the file of this path, one of these files.
+fn expanded_at(path: &str, files: &[(&str, &str)]) -> (String, String) {
     let mut system = MemorySystem::new();
     for (path, text) in files {
         system.insert(*path, *text);
     }
     let mut sources = Sources::new();
-    let path = Path::new("main.xacro");
+    let path = Path::new(path);
     let (root, mut found) = xml::load(&system, &mut sources, path);
     let (packages, arguments) = (BTreeMap::new(), BTreeMap::new());
     let given = Given { packages: &packages, arguments: &arguments };
@@ -150,6 +156,35 @@ fn files_are_included_from_packages_and_yaml_is_read() {
         ("parts/config/c.yaml", "mass: 2.5\nlimits: {upper: !degrees 90}\n"),
     ]);
     assert_eq!((text.as_str(), found.as_str()), ("<p m=\"2.5\" a=\"1.5707963267948966\"></p>", ""));
+}
+
+#[test]
+fn folders_stand_for_themselves_in_whatever_file_they_are_used() {
+    let (text, found) = expanded_at(
+        "robots/arm/urdf/arm.urdf.xacro",
+        &[
+            (
+                "robots/arm/urdf/arm.urdf.xacro",
+                "<robot xmlns:xacro=\"x\"><xacro:arg name=\"f\" default=\"$(dirname)/limits.yaml\"/>
+                 <xacro:include filename=\"$(find arm)/macros/arm.xacro\"/>
+                 <xacro:arm folder=\"$(find arm)/meshes\" limits=\"$(arg f)\"/></robot>",
+            ),
+            (
+                "robots/arm/macros/arm.xacro",
+                "<robot xmlns:xacro=\"x\"><xacro:include filename=\"./shape.xacro\"/>
+                 <xacro:macro name=\"arm\" params=\"folder limits\">
+                 <mesh filename=\"file://${folder}/a.stl\" v=\"${xacro.load_yaml(limits).v}\"/><xacro:shape/>
+                 </xacro:macro></robot>",
+            ),
+            (
+                "robots/arm/macros/shape.xacro",
+                "<robot xmlns:xacro=\"x\"><xacro:macro name=\"shape\" params=\"\"><s f=\"a.stl\"/></xacro:macro></robot>",
+            ),
+            ("robots/arm/urdf/limits.yaml", "v: 3"),
+        ],
+    );
+    let expected = "<mesh filename=\"package://arm/meshes/a.stl\" v=\"3\"></mesh><s f=\"a.stl\"></s>";
+    assert_eq!((text.as_str(), found.as_str()), (expected, ""));
 }
 
 #[test]

@@ -87,13 +87,13 @@ impl Expander<'_> {
                 let main = self.main_file().to_path_buf();
                 let find = |from: &Path| package_folder(self.system, self.packages, from, rest);
                 match find(&file).or_else(|| find(&main)) {
-                    Some(folder) => Ok(Value::Text(folder.display().to_string())),
+                    Some(folder) => Ok(self.folder(folder, Some(rest))),
                     None => Err(format!("package `{rest}` is not known; say where it is under [packages]")),
                 }
             }
             "dirname" => {
-                let folder = self.file().parent().unwrap_or(Path::new("")).display().to_string();
-                Ok(Value::Text(if folder.is_empty() { ".".to_owned() } else { folder }))
+                let folder = self.file().parent().unwrap_or(Path::new("")).to_path_buf();
+                Ok(self.folder(folder, None))
             }
             "eval" => evaluate(&syntax::parse(rest)?, &mut View { expander: self, top }),
             "optenv" => {
@@ -104,6 +104,28 @@ impl Expander<'_> {
                 Err("`$(env ...)` is refused: a description must not depend on the environment".to_owned())
             }
             _ => Err(format!("`$({name} ...)` is not known")),
+        }
+    }
+
+    /// A folder as text, remembered as one that stands for itself wherever that text is used.
+    fn folder(&mut self, folder: PathBuf, package: Option<&str>) -> Value {
+        if folder.as_os_str().is_empty() {
+            return Value::Text(".".to_owned());
+        }
+        let text = folder.display().to_string();
+        self.folders.insert(folder, package.map(str::to_owned));
+        Value::Text(text)
+    }
+
+    /// A reference to a file as it is understood from the description: those into a package name the package.
+    pub(super) fn as_reference(&self, name: String) -> String {
+        let path = Path::new(name.strip_prefix("file://").unwrap_or(&name));
+        let inside = |(folder, package): (&PathBuf, &Option<String>)| {
+            Some((package.as_ref()?.clone(), path.strip_prefix(folder).ok()?.display().to_string()))
+        };
+        match self.folders.iter().rev().find_map(inside) {
+            Some((package, rest)) => format!("package://{package}/{rest}"),
+            None => name,
         }
     }
 
@@ -157,6 +179,9 @@ impl Expander<'_> {
             if let Some(folder) = package_folder(self.system, self.packages, self.file(), package) {
                 return normal(&folder.join(rest));
             }
+        }
+        if self.folders.keys().any(|folder| Path::new(name).starts_with(folder)) {
+            return normal(Path::new(name));
         }
         normal(&self.file().parent().unwrap_or(Path::new("")).join(name))
     }
