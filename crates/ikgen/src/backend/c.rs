@@ -50,7 +50,7 @@ pub enum CError {
     /// The name is not one of C.
     #[error("{0:?} cannot name C functions: letters, digits and underscores are possible, a letter first")]
     Name(String),
-    /// The general solver of six joints.
+    /// The general solver of six joints, or an equation with eight roots: both need eigenvalues.
     #[error("the general solver of six joints has no C form yet; the Rust form has it")]
     Six,
 }
@@ -61,7 +61,7 @@ pub fn c_source(program: &Program, chain: &TrueChain, name: &str) -> Result<CSou
     if !starts || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
         return Err(CError::Name(name.into()));
     }
-    if program.uses(RootKind::Six) {
+    if program.uses(RootKind::Six) || program.uses(RootKind::Octic) {
         return Err(CError::Six);
     }
     let program = &crate::passes::prepare(program, chain);

@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 use super::CAPACITY;
 use crate::ir::{Block, Expr, Program, RootKind, Stmt, Value};
 use crate::kernel::chain::Frame;
-use crate::kernel::{CONIC_SOURCE, CORE_SQRT, PLATFORM_SQRT, SIX_SOURCES, SOURCES};
+use crate::kernel::{
+    CONIC_SOURCE, CORE_SQRT, EIGEN_SOURCES, OCTIC_SOURCE, PLATFORM_SQRT, SIX_SOURCES, SOURCES,
+};
 use crate::run::TrueChain;
 
 /// Choices of the Rust back end.
@@ -89,7 +91,11 @@ fn header(program: &Program, out: &mut String) {
         "pub use chain::{Frame, Link};\nuse candidate::{Arm, MOST_MISSES, WIDER, is_exact};\n\
          use math::{angle_of, cos_sin, mirrored, opposite, sqrt};\nuse roots::*;\n",
     );
-    for (kind, line) in [(RootKind::Conic, "use conic::conic;\n"), (RootKind::Six, "use six::six_of;\n")] {
+    for (kind, line) in [
+        (RootKind::Conic, "use conic::conic;\n"),
+        (RootKind::Octic, "use octic::octic;\n"),
+        (RootKind::Six, "use six::six_of;\n"),
+    ] {
         out.push_str(if program.uses(kind) { line } else { "" });
     }
     out.push('\n');
@@ -260,7 +266,7 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                 *loops += 1;
                 let k = *loops;
                 let args: Vec<String> = match kind {
-                    RootKind::Conic | RootKind::Six => {
+                    RootKind::Conic | RootKind::Octic | RootKind::Six => {
                         let all: Vec<String> = args.iter().map(|e| p.expr_text(*e)).collect();
                         let by = if *kind == RootKind::Six { "&" } else { "" };
                         vec![format!("{by}[{}]", all.join(", "))]
@@ -338,9 +344,12 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
 /// The kernel's files as modules, without their tests.
 fn kernel(program: &Program, options: &RustOptions, out: &mut String) {
     let conic: &[(&str, &str)] = if program.uses(RootKind::Conic) { &[CONIC_SOURCE] } else { &[] };
-    let six: &[(&str, &str)] = if program.uses(RootKind::Six) { &SIX_SOURCES } else { &[] };
+    let (octic, six) = (program.uses(RootKind::Octic), program.uses(RootKind::Six));
+    let eigen: &[(&str, &str)] = if octic || six { &EIGEN_SOURCES } else { &[] };
+    let octic: &[(&str, &str)] = if octic { &[OCTIC_SOURCE] } else { &[] };
+    let six: &[(&str, &str)] = if six { &SIX_SOURCES } else { &[] };
     let sqrt = ("sqrt", if options.std { PLATFORM_SQRT } else { CORE_SQRT });
-    for (name, source) in [sqrt].iter().chain(&SOURCES).chain(conic).chain(six) {
+    for (name, source) in [sqrt].iter().chain(&SOURCES).chain(conic).chain(eigen).chain(octic).chain(six) {
         let code = source.split("#[cfg(test)]").next().unwrap_or(source);
         let _ = writeln!(out, "mod {name} {{");
         for line in code.trim_end().lines() {

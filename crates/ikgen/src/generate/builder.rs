@@ -154,6 +154,11 @@ impl Builder {
         self.turn_roots(RootKind::Conic, name, &q)
     }
 
+    /// For each angle at which four waves cancel; coefficients in the order of [`RootKind::Octic`].
+    pub fn octic<'b>(&'b self, name: &str, a: &[Scalar<'b>; 9]) -> Turn<'b> {
+        self.turn_roots(RootKind::Octic, name, a)
+    }
+
     /// For each length with `a t^2 + b t + c = 0`.
     pub fn quadratic<'b>(&'b self, name: &str, a: Scalar<'b>, b: Scalar<'b>, c: Scalar<'b>) -> Scalar<'b> {
         self.roots(RootKind::Quadratic, &[a, b, c], &[format!("d{name}")])[0]
@@ -184,6 +189,13 @@ impl Builder {
         let first = self.nested(first);
         let otherwise = self.nested(otherwise);
         self.push(Stmt::Fallback { first, otherwise });
+    }
+
+    /// Writes to the same block, and closes the loops that this opens.
+    pub fn aside(&self, write: impl FnOnce()) {
+        for stmt in self.nested(write) {
+            self.push(stmt);
+        }
     }
 
     fn nested(&self, write: impl FnOnce()) -> Block {

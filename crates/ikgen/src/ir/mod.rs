@@ -22,6 +22,8 @@ pub enum RootKind {
     Circle,
     /// `conic a b c d e f -> c s`: `a cos^2 + b cos sin + c sin^2 + d cos + e sin + f = 0`.
     Conic,
+    /// `octic a0 a1 b1 ... a4 b4 -> c s`: `a0 + a1 cos q + b1 sin q + ... + a4 cos 4q + b4 sin 4q = 0`.
+    Octic,
     /// `quadratic a b c -> t`: `a t^2 + b t + c = 0`.
     Quadratic,
     /// `six ... -> c s c s c s c s c s c s`: six revolute joints that close a loop; arguments as [`six_of`](crate::kernel::six::six_of)
@@ -31,8 +33,16 @@ pub enum RootKind {
 
 impl RootKind {
     /// All kinds.
-    pub const ALL: [RootKind; 7] =
-        [Self::Align, Self::Mirror, Self::Half, Self::Circle, Self::Conic, Self::Quadratic, Self::Six];
+    pub const ALL: [RootKind; 8] = [
+        Self::Align,
+        Self::Mirror,
+        Self::Half,
+        Self::Circle,
+        Self::Conic,
+        Self::Octic,
+        Self::Quadratic,
+        Self::Six,
+    ];
 
     /// Its word in the text form.
     pub fn word(self) -> &'static str {
@@ -42,6 +52,7 @@ impl RootKind {
             Self::Half => "half",
             Self::Circle => "circle",
             Self::Conic => "conic",
+            Self::Octic => "octic",
             Self::Quadratic => "quadratic",
             Self::Six => "six",
         }
@@ -53,6 +64,7 @@ impl RootKind {
             Self::Align | Self::Mirror | Self::Half => 2,
             Self::Circle | Self::Quadratic => 3,
             Self::Conic => 6,
+            Self::Octic => 9,
             Self::Six => crate::kernel::six::NUMBERS,
         }
     }
@@ -67,14 +79,15 @@ impl RootKind {
     }
 
     /// The roots of one unknown for these argument values; none for [`Six`](Self::Six), which has six.
-    pub fn solve(self, x: &[f64], slack: f64) -> crate::kernel::roots::Roots<4> {
+    pub fn solve(self, x: &[f64], slack: f64) -> crate::kernel::roots::Roots<8> {
         use crate::kernel::roots;
         match self {
             Self::Align => roots::align(x[0], x[1], slack).widened(),
             Self::Mirror => roots::mirror(x[0], x[1], slack).widened(),
             Self::Half => roots::half(x[0], x[1], slack).widened(),
             Self::Circle => roots::circle(x[0], x[1], x[2], slack).widened(),
-            Self::Conic => crate::kernel::conic::conic([x[0], x[1], x[2], x[3], x[4], x[5]], slack),
+            Self::Conic => crate::kernel::conic::conic([x[0], x[1], x[2], x[3], x[4], x[5]], slack).widened(),
+            Self::Octic => crate::kernel::octic::octic(core::array::from_fn(|i| x[i]), slack),
             Self::Quadratic => roots::quadratic(x[0], x[1], x[2], slack).widened(),
             Self::Six => roots::Roots::NONE,
         }

@@ -11,6 +11,9 @@ pub const TOLERANCE: f64 = 1e-9;
 /// A solution that agrees to this is not polished.
 pub const EXACT: f64 = 1e-10;
 
+/// Newton steps within which a polish must halve the distance that is left.
+const PATIENCE: usize = 8;
+
 /// A rigid transform: rotation rows, then position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
@@ -91,7 +94,8 @@ pub fn forward(links: &[Link], last_from_tip: &Frame, steps: &[[f64; 2]]) -> Fra
 /// Brings `values` onto the pose by Newton steps on the true chain; the variables marked in `held` stay.
 ///
 /// Returns the distance that is left, the smallest met. Steps may go uphill: where two solutions fall together Newton's method
-/// halves its distance to them from far out, but may first have to get there.
+/// halves its distance to them from far out, but may first have to get there. They end when they lead nowhere: the
+/// distance has not fallen to a half within [`PATIENCE`] of them.
 pub fn polish(
     links: &[Link],
     last_from_tip: &Frame,
@@ -105,6 +109,7 @@ pub fn polish(
     let mut at = [0.0; MAX_JOINTS];
     at[..n].copy_from_slice(values);
     let mut best = f64::INFINITY;
+    let (mut halved, mut since) = (f64::INFINITY, 0);
     for _ in 0..50 {
         let (distance, error, columns) = linearise(links, last_from_tip, base_from_tip, &at[..n]);
         if distance < best {
@@ -115,6 +120,12 @@ pub fn polish(
                 break;
             }
         } else if best < EXACT || !(distance < f64::INFINITY) {
+            break;
+        }
+        since += 1;
+        if best <= 0.5 * halved {
+            (halved, since) = (best, 0);
+        } else if since >= PATIENCE {
             break;
         }
         let mut normal = [[0.0; MAX_JOINTS]; MAX_JOINTS];

@@ -17,13 +17,24 @@ pub type Square = [[f64; MAX_SIZE]; MAX_SIZE];
 pub fn hessenberg_eigenvalues(h: &mut Square, n: usize, found: &mut [[f64; 2]; MAX_SIZE]) -> usize {
     let mut count = 0;
     let mut size = n;
-    let mut sweeps = 0;
+    let mut sweeps = 0u32;
+    let mut norm = 0.0f64;
+    for row in &h[..n] {
+        for x in &row[..n] {
+            norm = norm.max(x.abs());
+        }
+    }
+    // Steps round by this part of the norm, so smaller neighbours on the diagonal say nothing; where eigenvalues come in pairs of
+    // opposite sign they vanish.
+    let least = 0.01 * norm;
     while size > 0 {
-        // The trailing block that no negligible subdiagonal entry cuts.
+        // The trailing block that no negligible subdiagonal entry cuts. Where two blocks have the same eigenvalues the entry between
+        // them stops shrinking at some times the rounding of a step.
+        let negligible = f64::EPSILON * (1u64 << (sweeps / 4)) as f64;
         let mut start = size - 1;
         while start > 0 {
-            let scale = h[start - 1][start - 1].abs() + h[start][start].abs();
-            if h[start][start - 1].abs() <= f64::EPSILON * scale {
+            let scale = least.max(h[start - 1][start - 1].abs() + h[start][start].abs());
+            if h[start][start - 1].abs() <= negligible * scale {
                 h[start][start - 1] = 0.0;
                 break;
             }
@@ -46,7 +57,7 @@ pub fn hessenberg_eigenvalues(h: &mut Square, n: usize, found: &mut [[f64; 2]; M
             if sweeps > 60 {
                 break;
             }
-            double_step(h, start, size, sweeps % 10 == 0);
+            double_step(h, start, size, sweeps);
         }
     }
     count
@@ -66,16 +77,22 @@ fn two_by_two(a: f64, b: f64, c: f64, d: f64) -> [[f64; 2]; 2] {
     [[d + far, 0.0], [other, 0.0]]
 }
 
-/// One implicit step with both eigenvalues of the trailing two by two block as shifts, on rows `start..size`.
-fn double_step(h: &mut Square, start: usize, size: usize, exceptional: bool) {
+/// One implicit step on rows `start..size`, with the eigenvalues of the trailing two by two block as shifts. Both never part two such
+/// blocks that have the same eigenvalues: after some sweeps only the one nearer to the corner is taken, twice, if they are real.
+fn double_step(h: &mut Square, start: usize, size: usize, sweep: u32) {
     let (k, l) = (size - 2, size - 1);
-    let (trace, determinant) = if exceptional {
+    let (mut trace, mut determinant) = (h[k][k] + h[l][l], h[k][k] * h[l][l] - h[k][l] * h[l][k]);
+    if sweep % 10 == 0 {
         // Breaks the rare cycles.
         let s = h[l][k].abs() + h[k][k - 1].abs();
-        (1.5 * s, s * s)
-    } else {
-        (h[k][k] + h[l][l], h[k][k] * h[l][l] - h[k][l] * h[l][k])
-    };
+        (trace, determinant) = (1.5 * s, s * s);
+    } else if sweep > 8 {
+        let [[x, imaginary], [y, _]] = two_by_two(h[k][k], h[k][l], h[l][k], h[l][l]);
+        if imaginary == 0.0 {
+            let shift = if (x - h[l][l]).abs() < (y - h[l][l]).abs() { x } else { y };
+            (trace, determinant) = (2.0 * shift, shift * shift);
+        }
+    }
     // The first column of (H - s1)(H - s2).
     let (i, j) = (start, start + 1);
     let mut x = h[i][i] * (h[i][i] - trace) + determinant + h[i][j] * h[j][i];
@@ -147,6 +164,35 @@ fn reflect_last(h: &mut Square, k: usize, vector: [f64; 2], columns: Range<usize
 mod tests {
     use super::*;
     use robotc_core::Seed;
+
+    #[test]
+    fn eigenvalues_of_opposite_sign_are_found() {
+        // t^8 + a t^6 + b t^4 + c t^2 + d with a double root in t^2: the diagonal stays at zero.
+        let squares = [0.3, 0.3, -0.7, 2.0];
+        let mut powers = [0.0; 9];
+        powers[0] = 1.0;
+        for (k, root) in squares.into_iter().enumerate() {
+            for i in (0..=2 * k).rev().step_by(2) {
+                powers[i + 2] += powers[i];
+                powers[i] *= -root;
+            }
+        }
+        let mut h = [[0.0; MAX_SIZE]; MAX_SIZE];
+        for k in 0..8 {
+            h[k][7] = -powers[k];
+            if k > 0 {
+                h[k][k - 1] = 1.0;
+            }
+        }
+        let mut found = [[0.0; 2]; MAX_SIZE];
+        assert_eq!(hessenberg_eigenvalues(&mut h, 8, &mut found), 8);
+        for root in squares {
+            let near = found[..8]
+                .iter()
+                .filter(|[x, y]| (x * x - y * y - root).abs() < 1e-6 && (x * y).abs() < 1e-6);
+            assert_eq!(near.count(), 2 * squares.iter().filter(|s| **s == root).count());
+        }
+    }
 
     #[test]
     fn eigenvalues_have_the_right_symmetric_functions() {

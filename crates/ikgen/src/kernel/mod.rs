@@ -14,6 +14,7 @@ pub mod eigen;
 pub mod elimination;
 pub mod math;
 pub mod null;
+pub mod octic;
 pub mod roots;
 pub mod six;
 pub mod sqrt;
@@ -34,12 +35,19 @@ pub(crate) const SOURCES: [(&str, &str); 4] = [
 #[cfg(feature = "generate")]
 pub(crate) const CONIC_SOURCE: (&str, &str) = ("conic", include_str!("conic.rs"));
 
+/// Source text of the further files of programs whose roots are eigenvalues.
+#[cfg(feature = "generate")]
+pub(crate) const EIGEN_SOURCES: [(&str, &str); 2] =
+    [("eigen", include_str!("eigen.rs")), ("waves", include_str!("waves.rs"))];
+
+/// Source text of the further file of programs with an equation of eight roots.
+#[cfg(feature = "generate")]
+pub(crate) const OCTIC_SOURCE: (&str, &str) = ("octic", include_str!("octic.rs"));
+
 /// Source text of the further files of programs that solve six joints in general.
 #[cfg(feature = "generate")]
-pub(crate) const SIX_SOURCES: [(&str, &str); 6] = [
+pub(crate) const SIX_SOURCES: [(&str, &str); 4] = [
     ("vector", include_str!("vector.rs")),
-    ("eigen", include_str!("eigen.rs")),
-    ("waves", include_str!("waves.rs")),
     ("elimination", include_str!("elimination.rs")),
     ("null", include_str!("null.rs")),
     ("six", include_str!("six.rs")),

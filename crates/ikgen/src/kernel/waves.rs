@@ -61,6 +61,71 @@ impl Waves {
         Waves { d, degree, largest: samples[at].abs(), start }
     }
 
+    /// `a[0] + a[1] cos q + a[2] sin q + ... + a[7] cos 4q + a[8] sin 4q`.
+    pub fn of_fourth(a: [f64; 9]) -> Waves {
+        const SIDE: f64 = core::f64::consts::FRAC_1_SQRT_2;
+        const EIGHTHS: [[f64; 2]; 8] = [
+            [1.0, 0.0],
+            [SIDE, SIDE],
+            [0.0, 1.0],
+            [-SIDE, SIDE],
+            [-1.0, 0.0],
+            [-SIDE, -SIDE],
+            [0.0, -1.0],
+            [SIDE, -SIDE],
+        ];
+        let mut d = [[0.0; 2]; MAX_DEGREE + 1];
+        d[0][0] = a[0];
+        for k in 1..5 {
+            d[k] = [0.5 * a[2 * k - 1], -0.5 * a[2 * k]];
+        }
+        let mut waves = Waves { d, degree: 4, largest: 0.0, start: 0.0 };
+        for (i, turn) in EIGHTHS.into_iter().enumerate() {
+            let value = waves.bends(turn)[0].abs();
+            if value > waves.largest {
+                waves.largest = value;
+                waves.start = (i as f64 - 4.0) * core::f64::consts::FRAC_PI_4;
+            }
+        }
+        waves
+    }
+
+    /// Value and the first two derivatives at a turn.
+    fn bends(&self, [c, s]: [f64; 2]) -> [f64; 3] {
+        let (mut x, mut y) = (1.0, 0.0);
+        let [mut value, mut slope, mut bend] = [self.d[0][0], 0.0, 0.0];
+        for (k, [real, imaginary]) in self.d.iter().enumerate().take(self.degree + 1).skip(1) {
+            (x, y) = (x * c - y * s, x * s + y * c);
+            let (along, across) = (2.0 * (real * x - imaginary * y), 2.0 * (real * y + imaginary * x));
+            let k = k as f64;
+            value += along;
+            slope -= k * across;
+            bend -= k * k * along;
+        }
+        [value, slope, bend]
+    }
+
+    /// The root near an angle, or the extremum where two roots fall together, as cosine and sine, and the value there; Newton steps.
+    pub fn improved(&self, angle: f64, double: bool) -> ([f64; 2], f64) {
+        let mut turn = cos_sin(angle);
+        let [mut value, mut slope, mut bend] = self.bends(turn);
+        for _ in 0..if double { 4 } else { 2 } {
+            let step = if double { -slope / bend } else { -value / slope };
+            if !(step.abs() < 2e-2) {
+                break;
+            }
+            let [c, s] = turn;
+            let [x, y] = [c - s * step, s + c * step];
+            let n = sqrt(x * x + y * y);
+            turn = [x / n, y / n];
+            [value, slope, bend] = self.bends(turn);
+            if step.abs() < 1e-9 {
+                break;
+            }
+        }
+        (turn, value)
+    }
+
     /// Size of a wave.
     pub fn size(&self, k: usize) -> f64 {
         sqrt(self.d[k][0] * self.d[k][0] + self.d[k][1] * self.d[k][1])

@@ -66,6 +66,7 @@ fn typical_roots(kind: RootKind) -> usize {
     match kind {
         RootKind::Align | RootKind::Half => 1,
         RootKind::Conic => 3,
+        RootKind::Octic => 4,
         _ => 2,
     }
 }

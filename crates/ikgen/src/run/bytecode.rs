@@ -4,6 +4,7 @@ use super::{MOST_ROOTS, SIX_ROOTS, Verdict, take};
 use crate::ir::{Binary, Block, Expr, Node, Program, RootKind, Stmt, Unary, Value, Var};
 use crate::kernel::chain::{Frame, MAX_JOINTS};
 use crate::kernel::conic::conic;
+use crate::kernel::octic::octic;
 use crate::kernel::roots::{self, Roots};
 use crate::kernel::six::{NUMBERS, six_of};
 use crate::run::TrueChain;
@@ -60,6 +61,7 @@ pub(super) struct Step {
 pub(super) enum Item {
     Steps { from: u32, to: u32 },
     ForEach { kind: RootKind, args: [u16; 6], out: [u16; 2], outputs: u8, body: Vec<Item> },
+    Octic { args: Box<[u16; 9]>, out: [u16; 2], body: Vec<Item> },
     Six { args: Box<[u16; NUMBERS]>, out: [u16; 12], body: Vec<Item> },
     IfZero { value: u16, tolerance: f64, then: Vec<Item>, otherwise: Vec<Item> },
     Fallback { first: Vec<Item>, otherwise: Vec<Item> },
@@ -215,8 +217,12 @@ impl Bytecode {
                         RootKind::Conic => {
                             self.each(conic([a, b, c, d, e, f], slack), each, x, slack, left, offer)
                         }
-                        RootKind::Six => unreachable!("six angles have an item of their own"),
+                        RootKind::Octic | RootKind::Six => unreachable!("these have items of their own"),
                     };
+                }
+                Item::Octic { args, out, body } => {
+                    let roots = octic(args.map(|i| x[at(i)]), slack);
+                    accepted += self.each(roots, (body, *out, 2), x, slack, left, offer);
                 }
                 Item::Six { args, out, body } => {
                     if !take(left, SIX_ROOTS) {
@@ -329,6 +335,15 @@ impl Translator<'_> {
                         *name = self.name(*v);
                     }
                     Some(Item::Six { args: registers, out: names, body: self.block(body) })
+                }
+                Stmt::ForEach { kind: RootKind::Octic, args, out, body } => {
+                    let mut registers = Box::new([0; 9]);
+                    for (r, e) in registers.iter_mut().zip(args) {
+                        *r = self.value(*e, &mut t);
+                    }
+                    self.flush(from, &mut items);
+                    let out = [self.name(out[0]), self.name(out[1])];
+                    Some(Item::Octic { args: registers, out, body: self.block(body) })
                 }
                 Stmt::ForEach { kind, args, out, body } => {
                     let mut registers = [self.constant(0); 6];

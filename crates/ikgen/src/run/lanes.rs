@@ -79,11 +79,11 @@ impl<'a, F: FnMut(usize, &[f64])> Run<'a, F> {
                         RootKind::Circle => roots(|[a, b, d, ..], s| roots::circle(a, b, d, s).into()),
                         RootKind::Quadratic => roots(|[a, b, c, ..], s| roots::quadratic(a, b, c, s).into()),
                         RootKind::Conic => roots(|q, s| conic(q, s).into()),
-                        RootKind::Six => unreachable!("six angles have an item of their own"),
+                        RootKind::Octic | RootKind::Six => unreachable!("these have items of their own"),
                     };
                     self.each(&found, (*out, *outputs), body, mask);
                 }
-                Item::Six { .. } => self.irregular |= mask,
+                Item::Octic { .. } | Item::Six { .. } => self.irregular |= mask,
                 Item::IfZero { value, tolerance, then, otherwise } => {
                     let value = self.x[usize::from(*value)];
                     let zero = lanes_where(mask, |lane| value[lane].abs() < *tolerance);

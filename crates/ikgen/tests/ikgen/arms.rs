@@ -207,7 +207,7 @@ pub(crate) fn xarm6() -> SerialChain {
     )
 }
 
-/// Six joints without a triple, of which each two neighbours are parallel or meet: solutions come in pairs (FANUC CRX-10iA/L).
+/// A wrist whose last axes meet beside the forearm, on an arm that moves in a plane (FANUC CRX-10iA/L).
 pub(crate) fn crx10() -> SerialChain {
     chain(
         "crx10",
@@ -221,6 +221,14 @@ pub(crate) fn crx10() -> SerialChain {
         ],
         [0.7, -0.15, 0.955],
     )
+}
+
+/// The same with upper arm and forearm of equal length: the wrist can be folded onto the shoulder (FANUC CRX-10iA).
+pub(crate) fn crx10_even() -> SerialChain {
+    let mut chain = crx10();
+    chain.name = "crx10_even".into();
+    chain.joints[2].previous_from_joint.translation.vector.z = 0.54;
+    chain
 }
 
 /// Makes joints slide along their axes.
@@ -284,6 +292,8 @@ pub(crate) fn all() -> Vec<SerialChain> {
         katana(),
         wam4(),
         xarm6(),
+        crx10(),
+        crx10_even(),
         scara(),
         stanford(),
         gantry(),

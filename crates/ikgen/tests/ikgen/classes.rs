@@ -47,9 +47,9 @@ fn chains_without_a_triple_are_solved_in_general() {
 }
 
 #[test]
-fn pairs_of_solutions_are_found_everywhere_on_the_grid_of_right_angles() {
+fn offset_wrists_are_solved_everywhere_on_the_grid_of_right_angles() {
     let compiled = compile(&arms::crx10(), &Options::default()).unwrap();
-    assert_eq!(compiled.class, "6R general, eliminated to degree 8");
+    assert_eq!(compiled.class, "6R offset wrist, axes 1 to 4 in a plane");
     let solver = compiled.solver();
     for set in poses::sets(compiled.chain(), &[], 4096, Seed::new(1)) {
         if set.name == "grid90" || set.name == "random" {

@@ -1,6 +1,7 @@
 //! The ways to solve a chain: one file each, one line in [`ALL`].
 
 mod general;
+mod offset_wrist;
 mod orient;
 mod reach;
 mod spherical_wrist;
@@ -23,6 +24,7 @@ pub struct Strategy {
 pub const SPECIAL: &[Strategy] = &[
     Strategy { name: "spherical wrist", unknowns: 6, write: spherical_wrist::write },
     Strategy { name: "three parallel axes", unknowns: 6, write: three_parallel::write },
+    Strategy { name: "offset wrist", unknowns: 6, write: offset_wrist::write },
 ];
 
 /// Strategies for any chain, for where no special one fits.

@@ -335,8 +335,8 @@ static void ik_solve_symmetric(double m[IK_VARIABLES][IK_VARIABLES], double righ
 /* Brings values onto the pose by Newton steps; returns the smallest distance met. */
 static double ik_polish(const ik_chain *chain, const ik_frame *pose, double values[IK_VARIABLES])
 {
-    double at[IK_VARIABLES], best = HUGE_VAL;
-    int round, i, j, k;
+    double at[IK_VARIABLES], best = HUGE_VAL, halved = HUGE_VAL;
+    int round, i, j, k, since = 0;
     for (i = 0; i < IK_VARIABLES; i++) at[i] = values[i];
     for (round = 0; round < 50; round++) {
         double axes[IK_LINKS][6], columns[IK_VARIABLES][6] = { { 0.0 } }, error[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
@@ -368,6 +368,13 @@ static double ik_polish(const ik_chain *chain, const ik_frame *pose, double valu
             for (i = 0; i < IK_VARIABLES; i++) values[i] = at[i];
             if (best < 1e-12 || converged) break;
         } else if (best < 1e-10 || !ik_finite(distance)) {
+            break;
+        }
+        since++;
+        if (best <= 0.5 * halved) {
+            halved = best;
+            since = 0;
+        } else if (since >= 8) {
             break;
         }
         for (i = 0; i < IK_VARIABLES; i++) {
