@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::Pose;
 use crate::ids::{DofIdx, LinkIdx};
-use crate::model::{Configuration, Geometry, RobotModel};
+use crate::model::{Configuration, Geometry, Kinematics, LinkPoses, RobotModel};
 use crate::robot::Robot;
 
 /// A checked task specification.
@@ -85,6 +85,23 @@ impl Article {
     pub fn moving_bodies(&self) -> impl Iterator<Item = (LinkIdx, usize)> {
         self.bodies.iter().copied().filter(|(link, _)| self.model.dofs_moving(*link).contains(&self.dof))
     }
+
+    /// Where its moving links are with its joint at `value`, its other joints as at the start: positions in
+    /// [`Task::obstacles`], and `world_from_obstacle` of each.
+    pub fn moved_bodies(&self, value: f64) -> Vec<(usize, Pose)> {
+        let mut configuration = self.configuration.clone();
+        configuration[self.dof] = value;
+        let mut poses = LinkPoses::default();
+        Kinematics::new(self.model.clone()).link_poses(&configuration, &mut poses);
+        self.moving_bodies()
+            .map(|(link, body)| (body, self.world_from_root * poses.root_from(link)))
+            .collect()
+    }
+
+    /// The value of its joint at the start.
+    pub fn value(&self) -> f64 {
+        self.configuration[self.dof]
+    }
 }
 
 /// Something that shall happen.
@@ -99,6 +116,23 @@ pub enum Goal {
         /// Largest tilt of the object's z axis against the world's while carried, radians, if limited.
         keep_upright: Option<f64>,
     },
+    /// Open or close a door, a drawer, a lever.
+    Open {
+        /// Position in [`Task::articles`].
+        article: usize,
+        /// Where its joint shall end up, radians or metres.
+        to: f64,
+    },
+}
+
+impl Task {
+    /// The name of what a goal is about: its object or its article.
+    pub fn name_of(&self, goal: &Goal) -> &str {
+        match *goal {
+            Goal::Place { object, .. } => &self.objects[object].name,
+            Goal::Open { article, .. } => &self.articles[article].name,
+        }
+    }
 }
 
 /// Where an object may be put.

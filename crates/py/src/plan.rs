@@ -122,10 +122,9 @@ impl Plan {
         let task = self.session.get().session.task();
         let list = PyList::empty(py);
         for segment in &self.plan.segments {
-            let robotc_core::task::Goal::Place { object, .. } = task.goals[segment.goal];
             let entry = PyDict::new(py);
             entry.set_item("kind", segment.kind.to_string())?;
-            entry.set_item("object", &task.objects[object].name)?;
+            entry.set_item("object", task.name_of(&task.goals[segment.goal]))?;
             entry.set_item("duration", segment.trajectory.duration())?;
             list.append(entry)?;
         }

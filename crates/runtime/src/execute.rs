@@ -1,9 +1,9 @@
 //! Kinematic execution of a plan: a simulated controller that follows trajectories, and what the world does meanwhile.
 
 use robotc_core::ids::Idx;
-use robotc_core::task::{Goal, Task};
+use robotc_core::task::{Article, Goal, Task};
 use robotc_core::{BodyIdx, Configuration, Pose, World};
-use robotc_planning::manipulation::{Event, Plan, SegmentKind};
+use robotc_planning::manipulation::{Choice, Event, Plan, SegmentKind};
 use thiserror::Error;
 
 /// The state of the world at one tick of the controller.
@@ -15,6 +15,8 @@ pub struct Tick {
     pub q: Configuration,
     /// Where each object of the task is, in their order.
     pub world_from_objects: Vec<Pose>,
+    /// The value of the joint of each article of the task, in their order.
+    pub articles: Vec<f64>,
 }
 
 /// A stretch of the execution.
@@ -71,17 +73,27 @@ impl Execution {
         self.ticks.last().map_or(0.0, |tick| tick.time)
     }
 
-    /// Goals of the task whose object did not end up where the task allows it, with the distance in metres from the place
-    /// the plan chose.
+    /// Goals of the task whose object or article did not end up where the task allows it, with the distance in metres from the
+    /// place the plan chose, or that of the article's joint from its goal.
     pub fn missed_goals(&self, task: &Task, plan: &Plan) -> Vec<(usize, f64)> {
         let mut missed = Vec::new();
         for number in 0..task.goals.len() {
-            let Goal::Place { object, .. } = task.goals[number];
-            let choice = plan.choices.iter().find(|c| c.goal == number);
-            let at = self.world.bodies()[BodyIdx::new(object)].world_from_body;
-            let off = choice.map_or(f64::INFINITY, |c| {
-                (c.world_from_object.translation.vector - at.translation.vector).norm()
-            });
+            let off = match plan.choices.iter().find(|c| c.goal() == number) {
+                None => f64::INFINITY,
+                Some(Choice::Place(choice)) => {
+                    let at = self.world.bodies()[BodyIdx::new(choice.object)].world_from_body;
+                    (choice.world_from_object.translation.vector - at.translation.vector).norm()
+                }
+                Some(Choice::Open(choice)) => {
+                    let at = self.ticks.last().map_or(f64::INFINITY, |tick| tick.articles[choice.article]);
+                    // An earlier of several goals of one article is history.
+                    let newer = |goal: &Goal| matches!(goal, Goal::Open { article, .. } if *article == choice.article);
+                    match task.goals[number + 1..].iter().any(newer) {
+                        true => 0.0,
+                        false => (at - choice.value).abs(),
+                    }
+                }
+            };
             if off > 1e-4 {
                 missed.push((number, off));
             }
@@ -97,7 +109,8 @@ pub fn execute(mut world: World, task: &Task, plan: &Plan, rate: f64) -> Result<
     let mut ticks = Vec::new();
     let mut segments = Vec::new();
     let mut start = world.time();
-    ticks.push(tick(&world, task));
+    let mut articles: Vec<f64> = task.articles.iter().map(Article::value).collect();
+    ticks.push(tick(&world, task, &articles));
     for (number, segment) in plan.segments.iter().enumerate() {
         let trajectory = &segment.trajectory;
         let here = world.q().select(trajectory.dofs());
@@ -113,11 +126,18 @@ pub fn execute(mut world: World, task: &Task, plan: &Plan, rate: f64) -> Result<
             q.set(trajectory.dofs(), &trajectory.sample(at).positions);
             world.set_q(q);
             world.set_time(start + at);
+            if let Some(motion) = &segment.article {
+                let value = motion.values.sample(at).positions[0];
+                articles[motion.article] = value;
+                for (obstacle, world_from_body) in task.articles[motion.article].moved_bodies(value) {
+                    world.place(BodyIdx::new(task.objects.len() + obstacle), world_from_body);
+                }
+            }
             if step == steps {
                 apply(&mut world, task, number, segment.event.as_ref())?;
             }
             if duration > 0.0 {
-                ticks.push(tick(&world, task));
+                ticks.push(tick(&world, task, &articles));
             }
         }
         let end = start + duration;
@@ -149,11 +169,12 @@ fn apply(
     Ok(())
 }
 
-fn tick(world: &World, task: &Task) -> Tick {
+fn tick(world: &World, task: &Task, articles: &[f64]) -> Tick {
     let place = |i: usize| world.bodies()[BodyIdx::new(i)].world_from_body;
     Tick {
         time: world.time(),
         q: world.q().clone(),
         world_from_objects: (0..task.objects.len()).map(place).collect(),
+        articles: articles.to_vec(),
     }
 }

@@ -37,7 +37,7 @@ pub fn film(session: &Session, execution: &Execution, trees: &TreeKeeper) -> Rec
     let mut poses = LinkPoses::default();
     session.kinematics().link_poses(&task.start, &mut poses);
     let robot = recording.add_robot(&task.robot.model, &task.world_from_robot, &poses);
-    let (objects, _) = recording.add_bodies(task);
+    let (objects, obstacles) = recording.add_bodies(task);
 
     let arm = session.arm();
     let tool =
@@ -62,13 +62,15 @@ pub fn film(session: &Session, execution: &Execution, trees: &TreeKeeper) -> Rec
         due = tick.time + FRAME_SECONDS;
         session.kinematics().link_poses(&tick.q, &mut poses);
         let bodies = objects.iter().copied().zip(tick.world_from_objects.iter().copied());
-        let frame: Vec<(NodeIdx, _)> = robot.poses(&task.world_from_robot, &poses).chain(bodies).collect();
+        let moved = task.articles.iter().zip(&tick.articles).flat_map(|(a, &value)| a.moved_bodies(value));
+        let moved = moved.map(|(obstacle, world_from_body)| (obstacles[obstacle], world_from_body));
+        let frame: Vec<(NodeIdx, _)> =
+            robot.poses(&task.world_from_robot, &poses).chain(bodies).chain(moved).collect();
         recording.push_frame(tick.time, frame);
     }
     for segment in &execution.segments {
         let Some(goal) = task.goals.get(segment.goal) else { continue };
-        let robotc_core::task::Goal::Place { object, .. } = goal;
-        let name = format!("{} {}", segment.kind, task.objects[*object].name);
+        let name = format!("{} {}", segment.kind, task.name_of(goal));
         recording.add_stage(name, segment.span[0], segment.span[1]);
     }
     recording

@@ -6,10 +6,10 @@ use robotc_core::task::Task;
 use robotc_core::{Configuration, Kinematics, LinkIdx, LinkPoses, SerialChain, TypedVec, World};
 use robotc_ikgen::Solver;
 use robotc_kb::kinds::{
-    ConvexParts, GraspSet as GraspSetKind, IkSolver, LinkStatistics, Reachability, ReachabilityMap,
+    Cage, CagingSet, ConvexParts, GraspSet as GraspSetKind, IkSolver, LinkStatistics, Reachability, ReachabilityMap,
     SelfCollisionPairs,
 };
-use robotc_kb::project::{OfArm, OfGripperAndObject, OfRobot, OfShape};
+use robotc_kb::project::{OfArm, OfGripperAndArticle, OfGripperAndObject, OfRobot, OfShape};
 use robotc_kb::{Knowledge, LoadError};
 use robotc_planning::grasp::GraspSet;
 use robotc_planning::manipulation::{
@@ -63,6 +63,7 @@ pub struct Session {
     arm: ArmModel,
     scene: Scene,
     grasps: Vec<GraspSet>,
+    cages: Vec<Arc<Vec<Cage>>>,
     reachability: Option<Arc<ReachabilityMap>>,
 }
 
@@ -106,7 +107,14 @@ impl Session {
             };
             grasps.push(set);
         }
-        Ok(Self { task, kinematics, arm, scene, grasps, reachability })
+        let mut cages = Vec::new();
+        for article in 0..task.articles.len() {
+            cages.push(match robot.arms[task.arm].gripper {
+                Some(gripper) => knowledge.load::<CagingSet>(&OfGripperAndArticle { gripper, article })?,
+                None => Arc::default(),
+            });
+        }
+        Ok(Self { task, kinematics, arm, scene, grasps, cages, reachability })
     }
 
     /// What shall happen.
@@ -133,6 +141,11 @@ impl Session {
     /// asks how well the arm reaches them.
     pub fn grasps(&self) -> &[GraspSet] {
         &self.grasps
+    }
+
+    /// The loose grips of each article of the task.
+    pub fn cages(&self) -> impl Iterator<Item = &[Cage]> {
+        self.cages.iter().map(|cages| cages.as_slice())
     }
 
     /// The reachability map of the arm, if it has one.
@@ -162,7 +175,8 @@ impl Session {
         observer: &mut dyn Observer,
     ) -> Result<Plan, NoPlan> {
         let grasps: Vec<&GraspSet> = self.grasps.iter().collect();
-        let problem = self.problem(&grasps);
+        let cages: Vec<&[Cage]> = self.cages().collect();
+        let problem = self.problem(&grasps, &cages);
         let mut attempt = 0;
         loop {
             let plan = pick_and_place(&problem, options, budget, seed.at(attempt), observer)?;
@@ -179,16 +193,18 @@ impl Session {
     /// [`ManipulationOptions::certified_step`] between two looks. Gives the number of states looked at.
     pub fn certify(&self, options: &ManipulationOptions, plan: &Plan) -> Result<u64, Uncertified> {
         let grasps: Vec<&GraspSet> = self.grasps.iter().collect();
-        certify(&self.problem(&grasps), options, plan)
+        let cages: Vec<&[Cage]> = self.cages().collect();
+        certify(&self.problem(&grasps, &cages), options, plan)
     }
 
-    fn problem<'a>(&'a self, grasps: &'a [&'a GraspSet]) -> Manipulation<'a> {
+    fn problem<'a>(&'a self, grasps: &'a [&'a GraspSet], cages: &'a [&'a [Cage]]) -> Manipulation<'a> {
         Manipulation {
             task: &self.task,
             kinematics: &self.kinematics,
             arm: &self.arm,
             scene: &self.scene,
             grasps,
+            cages,
             reachability: self.reachability.as_deref().map(|map| map as &dyn robotc_planning::Reachability),
             start: &self.task.start,
         }

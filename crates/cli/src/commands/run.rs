@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Args;
 use robotc_core::Seed;
 use robotc_kb::{Knowledge, Project};
-use robotc_planning::manipulation::{Plan, SegmentKind};
+use robotc_planning::manipulation::{Choice, Plan, SegmentKind};
 use robotc_planning::{Budget, Interrupt};
 use robotc_runtime::film::{TreeKeeper, film};
 use robotc_runtime::record::Recording;
@@ -138,7 +138,7 @@ fn write_results(
         let [start, end] = segment.span;
         print(&format!("{start:7.2} s  {:8} {:5.2} s", segment.kind.to_string(), end - start));
     }
-    print(&format!("{}, {:.2} s of motion", count(plan.choices.len(), "object"), execution.duration()));
+    print(&format!("{}, {:.2} s of motion", accomplished(plan), execution.duration()));
     if args.view.is_some() || args.glb.is_some() {
         let recording = clock.stage("film", || recording(session, execution, plan, trees, seed));
         if let Some(path) = &args.view {
@@ -159,6 +159,14 @@ fn write_results(
     Ok(())
 }
 
+/// How many objects were put down, and articles moved.
+fn accomplished(plan: &Plan) -> String {
+    let placed = plan.choices.iter().filter(|choice| matches!(choice, Choice::Place(_))).count();
+    let moved = plan.choices.len() - placed;
+    let counts = [(placed, "object"), (moved, "article")].into_iter().filter(|(n, _)| *n > 0);
+    counts.map(|(n, what)| count(n, what)).collect::<Vec<_>>().join(", ")
+}
+
 fn recording(
     session: &Session,
     execution: &Execution,
@@ -169,7 +177,7 @@ fn recording(
     let mut recording = film(session, execution, trees);
     recording
         .add_fact("robot", session.task().robot.model.name())
-        .add_fact("objects moved", plan.choices.len())
+        .add_fact("done", accomplished(plan))
         .add_fact("motion", format!("{:.1} s", execution.duration()))
         .add_fact("seed", seed);
     recording

@@ -536,6 +536,11 @@ pub const CODES: &[CodeInfo] = &[
         "open surface",
         "The triangles of the mesh do not close a surface, so it has no definite inside. Collision checks and grasps take the          convex parts that cover it instead, and so does its centre of mass. Close it in the program that wrote it if that matters.",
     ),
+    entry(
+        "R0510",
+        "unknown article",
+        "A goal opens something that is not an `[[article]]` of the task: only doors, drawers and levers have a joint to move.",
+    ),
 ];
 
 #[cfg(test)]

@@ -5,15 +5,26 @@ use super::extent::extent;
 use super::lookup;
 use crate::Pose;
 use crate::diag::{Diagnostic, Diagnostics};
-use crate::task::{Destination, Goal, Object, Obstacle};
+use crate::task::{Article, Destination, Goal, Object, Obstacle};
 
 /// A `[[goal]]` table as a goal, or `None` with findings.
 pub(super) fn read(
     table: &Table,
     objects: &[Object],
     obstacles: &[Obstacle],
+    articles: &[Article],
     diagnostics: &mut Diagnostics,
 ) -> Option<Goal> {
+    if let Some(name) = table.text("open") {
+        let known = articles.iter().map(|a| a.name.as_str());
+        let article = lookup::named(name, known, "R0510", "an article of this task", diagnostics)?;
+        let Article { model, dof, .. } = &articles[article];
+        let to = match table.get("to").and_then(|node| Some((node.number()?, node.span))) {
+            Some((to, place)) => lookup::within_limits(model, *dof, to, place, diagnostics)?,
+            None => model.dofs()[*dof].upper,
+        };
+        return Some(Goal::Open { article, to });
+    }
     let name = table.text("place")?;
     if obstacles.iter().any(|o| o.name == name.0) {
         diagnostics.push(

@@ -56,6 +56,11 @@ fn rule(rule: &Rule) -> Value {
             let choices: Vec<Value> = keys.iter().map(|key| json!({ "required": [key] })).collect();
             json!({ "oneOf": choices })
         }
+        Rule::OneWith { keys, with } => {
+            let choices: Vec<Value> = keys.iter().map(|key| json!({ "required": [key] })).collect();
+            let none: Map<String, Value> = keys.iter().map(|key| ((*key).to_owned(), json!(false))).collect();
+            json!({ "if": { "required": [with] }, "then": { "oneOf": choices }, "else": { "properties": none } })
+        }
         Rule::OnlyWith { keys, with } => {
             let dependent: Map<String, Value> =
                 keys.iter().map(|key| ((*key).to_owned(), json!([with]))).collect();

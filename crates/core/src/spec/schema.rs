@@ -202,6 +202,13 @@ impl Length {
 pub enum Rule {
     /// One of these keys is there, and no other.
     ExactlyOne(&'static [&'static str]),
+    /// Beside `with` one of these keys is there, and no other; elsewhere none has a meaning.
+    OneWith {
+        /// The dependent keys.
+        keys: &'static [&'static str],
+        /// The key they belong to.
+        with: &'static str,
+    },
     /// These keys have a meaning only beside `with`.
     OnlyWith {
         /// The dependent keys.

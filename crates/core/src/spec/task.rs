@@ -92,7 +92,7 @@ fn read(
     let articles: Vec<Article> = table.tables("article").filter_map(&mut read_article).collect();
     let goals: Vec<Goal> = table
         .tables("goal")
-        .filter_map(|(goal, _)| goals::read(goal, &objects, &standing, diagnostics))
+        .filter_map(|(goal, _)| goals::read(goal, &objects, &standing, &articles, diagnostics))
         .collect();
     let robot = &robot?.robot;
     let arm = arm(table, file.place, robot, diagnostics);

@@ -142,7 +142,7 @@ static ARTICLE: TableSchema = TableSchema {
 static GOAL: TableSchema = TableSchema {
     doc: "Something that shall happen.",
     keys: &[
-        Key::required("place", Kind::Text(Text::Object), "Pick this object up and put it down."),
+        Key::optional("place", Kind::Text(Text::Object), "Pick this object up and put it down."),
         Key::optional("at", Kind::Table(&POSE), "Where its frame shall end up in the world."),
         Key::optional(
             "any_yaw",
@@ -157,8 +157,21 @@ static GOAL: TableSchema = TableSchema {
             "Largest tilt of the object's z axis while it is carried. Default: no limit.",
         )
         .unit("rad"),
+        Key::optional("open", Kind::Text(Text::Name), "Move the joint of this article, with a loose grip on its handle."),
+        Key::optional(
+            "to",
+            Kind::Number(Range::ANY),
+            "Value of the joint to end up at. Default: its upper limit.",
+        )
+        .unit("rad or m"),
     ],
-    rules: &[Rule::ExactlyOne(&["at", "region"]), Rule::OnlyWith { keys: &["any_yaw"], with: "at" }],
+    rules: &[
+        Rule::ExactlyOne(&["place", "open"]),
+        Rule::OneWith { keys: &["at", "region"], with: "place" },
+        Rule::OnlyWith { keys: &["any_yaw"], with: "at" },
+        Rule::OnlyWith { keys: &["keep_upright"], with: "place" },
+        Rule::OnlyWith { keys: &["to"], with: "open" },
+    ],
 };
 
 static REGION: TableSchema = TableSchema {

@@ -81,38 +81,14 @@ impl Checker<'_> {
 
     fn rule(&mut self, table: &Table, place: Span, schema: &TableSchema, rule: &Rule, path: &str) {
         match *rule {
-            Rule::ExactlyOne(keys) => {
-                let present: Vec<&Entry> = keys.iter().filter_map(|key| table.entry(key)).collect();
-                let expected = format!("exactly one of {}", listed(keys.iter().copied()));
-                match present[..] {
-                    [_] => {}
-                    [] => self.diagnostics.push(
-                        Diagnostic::error(
-                            "R0109",
-                            format!("`{path}` says none of {}", listed(keys.iter().copied())),
-                        )
-                        .at(place, "one is needed here")
-                        .expected(expected),
-                    ),
-                    [first, ref rest @ ..] => {
-                        for entry in rest {
-                            self.diagnostics.push(
-                                Diagnostic::error(
-                                    "R0109",
-                                    format!("`{path}` says both `{}` and `{}`", first.key, entry.key),
-                                )
-                                .at(entry.key_span, "one too many")
-                                .expected(expected.clone()),
-                            );
-                        }
-                    }
-                }
-            }
+            Rule::ExactlyOne(keys) => self.exactly_one(table, place, keys, path),
+            Rule::OneWith { keys, with } => match table.get(with) {
+                Some(_) => self.exactly_one(table, place, keys, path),
+                None => self.only_with(table, keys, with),
+            },
             Rule::OnlyWith { keys, with } => {
                 if table.get(with).is_none() {
-                    for entry in keys.iter().filter_map(|key| table.entry(key)) {
-                        self.without_effect(entry, format!("beside `{with}`"));
-                    }
+                    self.only_with(table, keys, with);
                 }
             }
             Rule::Goes { key, value, then } => {
@@ -125,6 +101,40 @@ impl Checker<'_> {
                     _ => {}
                 }
             }
+        }
+    }
+
+    fn exactly_one(&mut self, table: &Table, place: Span, keys: &[&'static str], path: &str) {
+        let present: Vec<&Entry> = keys.iter().filter_map(|key| table.entry(key)).collect();
+        let expected = format!("exactly one of {}", listed(keys.iter().copied()));
+        match present[..] {
+            [_] => {}
+            [] => self.diagnostics.push(
+                Diagnostic::error(
+                    "R0109",
+                    format!("`{path}` says none of {}", listed(keys.iter().copied())),
+                )
+                .at(place, "one is needed here")
+                .expected(expected),
+            ),
+            [first, ref rest @ ..] => {
+                for entry in rest {
+                    self.diagnostics.push(
+                        Diagnostic::error(
+                            "R0109",
+                            format!("`{path}` says both `{}` and `{}`", first.key, entry.key),
+                        )
+                        .at(entry.key_span, "one too many")
+                        .expected(expected.clone()),
+                    );
+                }
+            }
+        }
+    }
+
+    fn only_with(&mut self, table: &Table, keys: &[&'static str], with: &str) {
+        for entry in keys.iter().filter_map(|key| table.entry(key)) {
+            self.without_effect(entry, format!("beside `{with}`"));
         }
     }
 

@@ -10,6 +10,7 @@
 //! pulling and pushing, when one of them gets no farther. All work on an [`ArticulatedTask`]; [`CagedObject`] is the one of
 //! an arm.
 
+mod cage;
 mod discrete;
 mod fixed;
 mod object;
@@ -19,9 +20,10 @@ mod task;
 #[cfg(test)]
 mod tests;
 
+pub use cage::{Cage, CageHold};
 pub use discrete::discrete_search;
 pub use fixed::FixedGrasp;
-pub use object::{CageGrasp, CagedObject, CagedObjectError, CagedObjectOptions};
+pub use object::{CageGrasp, CagedObject, CagedObjectError, CagedObjectOptions, ObjectStep};
 pub use randomized::{CageStart, RandomizedOptions, randomized_search};
 pub use switch::{CageStage, CageSwitchFailure, open_with_sets};
 pub use task::{

@@ -27,7 +27,7 @@ pub struct CagedObjectOptions {
     pub shift: f64,
     /// The same for their orientations, radians.
     pub turn: f64,
-    /// Longest motion of the arm between neighbouring states, in its metric.
+    /// Longest motion of the arm between neighbouring states, as a share of the diameter of its space.
     pub longest_motion: f64,
     /// Values of each free joint that are tried over its whole range.
     pub free_samples: usize,
@@ -40,7 +40,7 @@ pub struct CagedObjectOptions {
 
 impl Default for CagedObjectOptions {
     fn default() -> Self {
-        Self { shift: 0.03, turn: 0.4, longest_motion: 0.6, free_samples: 8, free_step: 0.05, branches: 8 }
+        Self { shift: 0.03, turn: 0.4, longest_motion: 0.04, free_samples: 8, free_step: 0.05, branches: 8 }
     }
 }
 
@@ -50,65 +50,89 @@ pub enum CagedObjectError {
     /// There are no grasps.
     #[error("the set of caging grasps is empty")]
     NoGrasps,
-    /// Positions of the object and checkers do not belong together.
-    #[error(
-        "{positions} positions of the object need as many checkers, and one more than a multiple of {substeps}"
-    )]
-    Positions {
-        /// Number of positions.
-        positions: usize,
-        /// Positions for each step.
-        substeps: usize,
-    },
+    /// There are no steps.
+    #[error("the object has no steps to go through")]
+    NoSteps,
 }
 
-/// An arm that moves a part of a mechanism through given positions.
+/// One of the configurations that the object goes through.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObjectStep {
+    /// The value of its joint.
+    pub value: f64,
+    /// Where its moving part is then.
+    pub world_from_part: Pose,
+}
+
+/// An arm that moves a part of a mechanism through given steps.
+///
+/// Motions are straight in the joints of the arm, the fingers and the mechanism at once.
 pub struct CagedObject<'a, C> {
     arm: &'a ArmModel,
     grasps: &'a [CageGrasp],
+    fingers: Vec<Vec<f64>>,
     adjacent: Vec<Vec<usize>>,
-    world_from_part: Vec<Pose>,
-    checkers: Vec<C>,
-    substeps: usize,
+    steps: Vec<ObjectStep>,
+    checker: C,
     rest: Vec<f64>,
+    longest_motion: f64,
     options: CagedObjectOptions,
     scratch: IkSolutions,
 }
 
 impl<'a, C: EdgeChecker> CagedObject<'a, C> {
-    /// A task with a step at every `substeps`-th of the positions, first and last included.
+    /// A task with these steps, the present one first and the goal last.
     ///
-    /// `checkers` check the arm with the object at each of the positions, which are so near to each other that their states
-    /// stand for all in between. Joint angles are those nearest to `rest` where there is no nearer configuration to keep to.
+    /// The states of `checker` are the joints of the arm and then the value of the object. Joint angles are those nearest to
+    /// `rest` where there is no nearer configuration to keep to.
     pub fn new(
         arm: &'a ArmModel,
         grasps: &'a [CageGrasp],
-        world_from_part: Vec<Pose>,
-        checkers: Vec<C>,
-        substeps: usize,
+        steps: Vec<ObjectStep>,
+        checker: C,
         rest: &[f64],
         options: CagedObjectOptions,
     ) -> Result<Self, CagedObjectError> {
         if grasps.is_empty() {
             return Err(CagedObjectError::NoGrasps);
         }
-        let (positions, substeps) = (world_from_part.len(), substeps.max(1));
-        if positions == 0 || positions != checkers.len() || (positions - 1) % substeps != 0 {
-            return Err(CagedObjectError::Positions { positions, substeps });
+        if steps.is_empty() {
+            return Err(CagedObjectError::NoSteps);
         }
         let near = |a: &CageGrasp, b: &CageGrasp| {
-            let gap = a.part_from_tool.inv_mul(&b.part_from_tool);
-            gap.translation.vector.norm() <= options.shift && gap.rotation.angle() <= options.turn
+            let (a, b) = (&a.part_from_tool, &b.part_from_tool);
+            (a.translation.vector - b.translation.vector).norm() <= options.shift
+                && a.rotation.angle_to(&b.rotation) <= options.turn
         };
         let adjacent =
             grasps.iter().map(|a| (0..grasps.len()).filter(|&b| near(a, &grasps[b])).collect()).collect();
+        let longest_motion = options.longest_motion * arm.space().diameter();
         let (rest, scratch) = (rest.to_vec(), IkSolutions::new());
-        Ok(Self { arm, grasps, adjacent, world_from_part, checkers, substeps, rest, options, scratch })
+        let fingers = Vec::new();
+        Ok(Self { arm, grasps, fingers, adjacent, steps, checker, rest, longest_motion, options, scratch })
+    }
+
+    /// The same task with fingers that have values of their own in each grasp: the states of the checker are the joints of the
+    /// arm, those of the fingers, and the value of the object.
+    pub fn with_fingers(mut self, fingers: Vec<Vec<f64>>) -> Self {
+        self.fingers = fingers;
+        self
+    }
+
+    /// A state as the checker sees it.
+    pub fn whole(&self, state: &CagedState) -> Vec<f64> {
+        let fingers = self.fingers.get(state.grasp).map_or(&[][..], |fingers| fingers);
+        [state.q.as_slice(), fingers, &[self.steps[state.step].value]].concat()
+    }
+
+    /// The checker.
+    pub fn checker(&mut self) -> &mut C {
+        &mut self.checker
     }
 
     /// `world_from_tool` of a grasp at a step.
     pub fn world_from_tool(&self, step: usize, grasp: usize) -> Pose {
-        self.world_from_part[step * self.substeps] * self.grasps[grasp].part_from_tool
+        self.steps[step].world_from_part * self.grasps[grasp].part_from_tool
     }
 
     /// Values of the free joints to try.
@@ -147,7 +171,7 @@ impl<C: EdgeChecker> ArticulatedTask for CagedObject<'_, C> {
     }
 
     fn steps(&self) -> usize {
-        (self.world_from_part.len() - 1) / self.substeps + 1
+        self.steps.len()
     }
 
     fn grasps(&self) -> usize {
@@ -171,35 +195,34 @@ impl<C: EdgeChecker> ArticulatedTask for CagedObject<'_, C> {
             for q in solutions {
                 let distance = self.arm.space().distance(&q, reference);
                 // What is too far for a motion needs no check.
-                if near.is_none() || distance <= self.options.longest_motion {
+                if near.is_none() || distance <= self.longest_motion {
                     found.push((distance, q));
                 }
             }
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let checker = &mut self.checkers[step * self.substeps];
-        let free = |q: &Vec<f64>| checker.state(q).is_ok();
         // Over the whole range of a redundant arm all values count: neighbours at other steps are found among them.
         let whole_range = near.is_none() && !self.arm.free_variables().is_empty();
         let most = if whole_range { usize::MAX } else { self.options.branches };
-        found.into_iter().map(|(_, q)| q).filter(free).take(most).collect()
+        let mut free = Vec::new();
+        for (_, q) in found {
+            let state = CagedState { step, grasp, q };
+            if self.checker.state(&self.whole(&state)).is_ok() {
+                free.push(state.q);
+            }
+            if free.len() == most {
+                break;
+            }
+        }
+        free
     }
 
     fn motion(&mut self, from: &CagedState, to: &CagedState) -> Result<(), Obstruction> {
-        let (first, last) = ((from.step * self.substeps) as f64, (to.step * self.substeps) as f64);
-        let space = self.arm.space();
-        let checker = &self.checkers[from.step * self.substeps];
-        let travel = checker.travel(&space.difference(&from.q, &to.q));
-        let looks = (last - first).abs().max((travel / checker.resolution()).ceil()).max(1.0);
-        for k in 1..=looks as usize {
-            let t = k as f64 / looks;
-            let position = (first + t * (last - first)).round() as usize;
-            self.checkers[position].state(&space.interpolate(&from.q, &to.q, t))?;
-        }
-        Ok(())
+        let (from, to) = (self.whole(from), self.whole(to));
+        self.checker.edge(&from, &to).map_err(|blocked| blocked.by)
     }
 
     fn longest_motion(&self) -> f64 {
-        self.options.longest_motion
+        self.longest_motion
     }
 }

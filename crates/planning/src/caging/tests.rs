@@ -12,7 +12,7 @@ use crate::budget::{Budget, Interrupt};
 use crate::edge::{EdgeChecker, Obstruction};
 use crate::mechanism::{Mechanism, MechanismMotion};
 use crate::scene::{RobotChecker, Rules, Scene};
-use crate::space::Space;
+use crate::space::{Axis, Space};
 use crate::testbed::{self, Limits, REST};
 use crate::toy::Toy;
 
@@ -233,13 +233,44 @@ fn cupboard(x: f64, y: f64, z: f64, angle: f64) -> Mechanism {
 }
 
 const STEPS: usize = 15;
+/// Positions of the door for each step: so near to each other that they stand for all in between.
 const SUBSTEPS: usize = 4;
 
 fn positions(mechanism: &Mechanism) -> Vec<Pose> {
-    Mechanism::steps(mechanism.range.0, mechanism.range.1, (STEPS - 1) * SUBSTEPS + 1)
-        .into_iter()
-        .map(|value| mechanism.world_from_part(value))
-        .collect()
+    let values = Mechanism::steps(mechanism.range.0, mechanism.range.1, (STEPS - 1) * SUBSTEPS + 1);
+    values.into_iter().map(|value| mechanism.world_from_part(value)).collect()
+}
+
+fn steps(mechanism: &Mechanism) -> Vec<ObjectStep> {
+    let step = |value| ObjectStep { value, world_from_part: mechanism.world_from_part(value) };
+    Mechanism::steps(mechanism.range.0, mechanism.range.1, STEPS).into_iter().map(step).collect()
+}
+
+/// The arm beside a door at the nearest of some positions.
+struct DoorChecker<'a> {
+    space: Space,
+    checkers: Vec<RobotChecker<'a>>,
+    range: (f64, f64),
+}
+
+impl EdgeChecker for DoorChecker<'_> {
+    fn space(&self) -> &Space {
+        &self.space
+    }
+    fn state(&mut self, q: &[f64]) -> Result<f64, Obstruction> {
+        let (value, joints) = q.split_last().unwrap();
+        let fraction = (value - self.range.0) / (self.range.1 - self.range.0);
+        let position = (fraction * (self.checkers.len() - 1) as f64).round() as usize;
+        self.checkers[position].state(joints)
+    }
+    fn travel(&self, difference: &[f64]) -> f64 {
+        let (value, joints) = difference.split_last().unwrap();
+        let positions = value.abs() / (self.range.1 - self.range.0) * (self.checkers.len() - 1) as f64;
+        self.checkers[0].travel(joints).max(positions * self.resolution())
+    }
+    fn resolution(&self) -> f64 {
+        self.checkers[0].resolution()
+    }
 }
 
 fn rest(arm: &ArmModel) -> Vec<f64> {
@@ -271,17 +302,21 @@ fn scenes(rail: bool, mechanism: &Mechanism, lever: f64) -> (Vec<Scene>, Configu
 }
 
 /// In each scene the gripper may touch the handle, and nothing else anything.
-fn checkers<'a>(
+fn checker<'a>(
     robot: &Robot,
     arm: &'a ArmModel,
     scenes: &'a [Scene],
     q: &Configuration,
-) -> Vec<RobotChecker<'a>> {
+    mechanism: &Mechanism,
+) -> DoorChecker<'a> {
     let gripper = ["hand", "left", "right"].iter().filter_map(|n| robot.model.link_named(n)).collect();
     let rules = Rules { target: Some(BodyIdx::new(1)), gripper, ..Rules::default() };
     let checker =
         |scene| RobotChecker::new(scene, arm.space(), arm.dofs(), q, rules.clone(), 0.02).without_clearance();
-    scenes.iter().map(checker).collect()
+    let value = Axis::bounded(mechanism.range.0, mechanism.range.1);
+    let axes = arm.space().axes().iter().copied().chain([value]).collect();
+    let checkers = scenes.iter().map(checker).collect();
+    DoorChecker { space: Space::new(axes), checkers, range: mechanism.range }
 }
 
 #[test]
@@ -291,18 +326,10 @@ fn an_arm_opens_a_cupboard_without_touching_anything_but_the_handle() {
         let arm = testbed::arm(rail);
         let mechanism = cupboard(0.8, -0.17, 0.45, 1.4);
         let (scenes, q) = scenes(rail, &mechanism, 0.34);
-        let checkers = checkers(&robot, &arm, &scenes, &q);
-        let grasps = handle_cage(0.34);
-        let mut task = CagedObject::new(
-            &arm,
-            &grasps,
-            positions(&mechanism),
-            checkers,
-            SUBSTEPS,
-            &rest(&arm),
-            CagedObjectOptions::default(),
-        )
-        .unwrap();
+        let checker = checker(&robot, &arm, &scenes, &q, &mechanism);
+        let (grasps, options) = (handle_cage(0.34), CagedObjectOptions::default());
+        let mut task =
+            CagedObject::new(&arm, &grasps, steps(&mechanism), checker, &rest(&arm), options).unwrap();
         for seed in 0..3 {
             let found =
                 randomized(&mut task, seed).unwrap_or_else(|e| panic!("rail {rail}: {e} {:?}", e.statistics));
@@ -328,11 +355,10 @@ fn feasible(rail: bool, lever: f64, angle: f64, grid: &[(f64, f64)]) -> [usize; 
     for &(x, y) in grid {
         let mechanism = cupboard(x, y, 0.45, angle);
         let (scenes, q) = scenes(rail, &mechanism, lever);
-        let checkers = checkers(&robot, &arm, &scenes, &q);
+        let checker = checker(&robot, &arm, &scenes, &q, &mechanism);
         let options = CagedObjectOptions::default();
-        let positions = positions(&mechanism);
         let mut task =
-            CagedObject::new(&arm, &grasps, positions, checkers, SUBSTEPS, &rest(&arm), options).unwrap();
+            CagedObject::new(&arm, &grasps, steps(&mechanism), checker, &rest(&arm), options).unwrap();
         let relaxed = discrete_search(&mut task, &Budget::unlimited()).is_ok();
         let fixed = discrete_search(&mut FixedGrasp::new(&mut task), &Budget::unlimited()).is_ok();
         counts[0] += usize::from(relaxed);
@@ -355,15 +381,12 @@ fn the_region_from_which_a_door_can_be_opened_grows() {
 #[test]
 fn bad_tasks_are_refused() {
     let arm = testbed::arm(false);
-    let (grasps, poses) = (handle_cage(0.34), positions(&cupboard(0.8, -0.17, 0.45, 1.4)));
-    let make = |grasps, poses: &[Pose], checkers: usize, substeps| {
-        let checkers: Vec<Limits<'_>> = (0..checkers).map(|_| Limits::new(&arm)).collect();
+    let (grasps, steps) = (handle_cage(0.34), steps(&cupboard(0.8, -0.17, 0.45, 1.4)));
+    let make = |grasps, steps: &[ObjectStep]| {
         let options = CagedObjectOptions::default();
-        CagedObject::new(&arm, grasps, poses.to_vec(), checkers, substeps, &REST, options).err()
+        CagedObject::new(&arm, grasps, steps.to_vec(), Limits::new(&arm), &REST, options).err()
     };
-    assert_eq!(make(&grasps, &poses, poses.len(), SUBSTEPS), None);
-    assert_eq!(make(&[], &poses, poses.len(), SUBSTEPS), Some(CagedObjectError::NoGrasps));
-    let uneven = Some(CagedObjectError::Positions { positions: poses.len(), substeps: 11 });
-    assert_eq!(make(&grasps, &poses, poses.len(), 11), uneven);
-    assert!(make(&grasps, &poses, 3, SUBSTEPS).is_some());
+    assert_eq!(make(&grasps, &steps), None);
+    assert_eq!(make(&[], &steps), Some(CagedObjectError::NoGrasps));
+    assert_eq!(make(&grasps, &[]), Some(CagedObjectError::NoSteps));
 }

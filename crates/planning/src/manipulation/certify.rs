@@ -1,15 +1,17 @@
 //! An independent look at a finished plan: replays it densely and believes nothing that the planner found.
 
 use robotc_core::ids::Idx;
-use robotc_core::task::Goal;
+use robotc_core::task::{Article, Goal};
 use robotc_core::{BodyIdx, Configuration, Trajectory};
 use thiserror::Error;
 
 use super::options::ManipulationOptions;
-use super::plan::{Event, Held, Plan, Segment, SegmentKind};
+use super::plan::{ArticleMotion, Choice, Event, Held, OpenChoice, Plan, Segment, SegmentKind};
 use super::problem::{Manipulation, allowed_sink, gripper_links, motion_limits};
+use crate::caging::Cage;
 use crate::edge::EdgeChecker;
-use crate::scene::{Grip, RobotChecker, Rules, Scene};
+use crate::mechanism::Mechanism;
+use crate::scene::{ArticleChecker, Grip, RobotChecker, Rules, Scene};
 use crate::space::{Axis, Space};
 use crate::timing::TimedPath;
 
@@ -51,6 +53,7 @@ pub fn certify(
     let links = gripper.map_or_else(Vec::new, |g| gripper_links(robot, g));
     let mut scene = problem.scene.clone();
     let mut q = problem.start.clone();
+    let mut values: Vec<f64> = problem.task.articles.iter().map(Article::value).collect();
     let mut held: Option<Held> = None;
     let mut states = 0;
     for (number, segment) in plan.segments.iter().enumerate() {
@@ -63,14 +66,24 @@ pub fn certify(
         if segment.held != held {
             return Err(wrong(0.0, "what is held does not follow from the events".into()));
         }
-        let limits = motion_limits(robot, trajectory.dofs());
+        let limits = motion_limits(&robot.model, trajectory.dofs());
         let timed = TimedPath { times: trajectory.times().to_vec(), knots: trajectory.knots().to_vec() };
         if timed.limit_use(&limits) > LIMIT_USE {
             return Err(wrong(0.0, "a speed limit is exceeded".into()));
         }
         let rules = rules(problem, options, segment, &links);
-        states += replay(problem, &scene, &q, segment, rules, resolution)
-            .map_err(|(time, message)| wrong(time, message))?;
+        states += match &segment.article {
+            None => replay(problem, &scene, &q, segment, rules, resolution),
+            Some(motion) => {
+                let from = std::mem::replace(&mut values[motion.article], motion.values.end()[0]);
+                let begins = Situation { scene: &scene, q: &q, value: from };
+                replay_article(problem, options, begins, segment, motion, rules)
+            }
+        }
+        .map_err(|(time, message)| wrong(time, message))?;
+        if let Some(motion) = &segment.article {
+            problem.move_article(&mut scene, motion.article, values[motion.article]);
+        }
         q.set(trajectory.dofs(), trajectory.end());
         let end = trajectory.duration();
         match &segment.event {
@@ -103,6 +116,16 @@ pub fn certify(
             None => {}
         }
     }
+    for choice in &plan.choices {
+        if let Choice::Open(OpenChoice { goal, article, .. }) = *choice
+            && let Goal::Open { to, .. } = problem.task.goals[goal]
+            && (values[article] - to).abs() > PLACED
+        {
+            let (segment, kind) = (plan.segments.len(), SegmentKind::Open);
+            let message = format!("the joint of the article ends at {:.4}", values[article]);
+            return Err(Uncertified { segment, kind, time: 0.0, message });
+        }
+    }
     Ok(states)
 }
 
@@ -113,7 +136,10 @@ fn rules(
     segment: &Segment,
     links: &[robotc_core::LinkIdx],
 ) -> Rules {
-    let Goal::Place { object, .. } = problem.task.goals[segment.goal];
+    let (target, give) = match problem.task.goals[segment.goal] {
+        Goal::Place { object, .. } => (BodyIdx::new(object), None),
+        Goal::Open { article, .. } => (BodyIdx::new(problem.handle_of(article)), Some(options.give)),
+    };
     let held = segment.held.as_ref().map(|h| Grip {
         body: BodyIdx::new(h.object),
         link: h.link,
@@ -121,15 +147,25 @@ fn rules(
     });
     let near = matches!(
         segment.kind,
-        SegmentKind::Approach | SegmentKind::Grasp | SegmentKind::Release | SegmentKind::Retreat
+        SegmentKind::Approach
+            | SegmentKind::Grasp
+            | SegmentKind::Open
+            | SegmentKind::Release
+            | SegmentKind::Retreat
     );
-    let stands = matches!(segment.kind, SegmentKind::Lift | SegmentKind::Lower);
+    let sink = match &segment.held {
+        Some(held) if matches!(segment.kind, SegmentKind::Lift | SegmentKind::Lower) => {
+            Some(allowed_sink(problem, options, held.object))
+        }
+        _ => None,
+    };
     Rules {
         margin: 0.0,
         held,
         gripper: links.to_vec(),
-        target: near.then_some(BodyIdx::new(object)),
-        sink: stands.then(|| allowed_sink(problem, options, object)),
+        target: near.then_some(target),
+        give,
+        sink,
     }
 }
 
@@ -143,17 +179,15 @@ fn replay(
     resolution: f64,
 ) -> Result<u64, (f64, String)> {
     let trajectory = &segment.trajectory;
-    let robot = &*problem.task.robot;
-    let axis = |dof: &robotc_core::DofIdx| {
-        let d = &robot.model.dofs()[*dof];
-        // Values of limits may be exceeded by rounding.
-        Axis { lower: d.lower - 1e-9, upper: d.upper + 1e-9, wraps: d.continuous, weight: 1.0 }
+    let space = replay_space(problem, trajectory);
+    let keep_upright = match problem.task.goals[segment.goal] {
+        Goal::Place { keep_upright, .. } => keep_upright,
+        Goal::Open { .. } => None,
     };
-    let space = Space::new(trajectory.dofs().iter().map(axis).collect());
-    let Goal::Place { keep_upright, .. } = problem.task.goals[segment.goal];
     let mut checker =
         RobotChecker::new(scene, &space, trajectory.dofs(), q, rules, resolution).without_clearance();
-    for (time, at) in dense_states(&checker, trajectory, resolution) {
+    let sample = |time: f64| trajectory.sample(time).positions;
+    for (time, at) in dense_states(&checker, trajectory.times(), &sample, resolution) {
         if let (Some(tilt), Some(held), SegmentKind::Carry) = (keep_upright, &segment.held, segment.kind) {
             let mut full = q.clone();
             full.set(trajectory.dofs(), &at);
@@ -169,22 +203,98 @@ fn replay(
     Ok(checker.states())
 }
 
-/// Times and positions along a trajectory so that no point travels more than the resolution in between; the ends are
-/// among them.
-fn dense_states(
-    checker: &RobotChecker<'_>,
-    trajectory: &Trajectory,
+/// Where a segment begins.
+struct Situation<'s> {
+    scene: &'s Scene,
+    q: &'s Configuration,
+    /// The value of the article that moves.
+    value: f64,
+}
+
+/// Looks at the motion of robot and article: joins, limits of the article's joint, contacts, and whether the gripper stays in
+/// the cage.
+fn replay_article(
+    problem: &Manipulation<'_>,
+    options: &ManipulationOptions,
+    begins: Situation<'_>,
+    segment: &Segment,
+    motion: &ArticleMotion,
+    rules: Rules,
+) -> Result<u64, (f64, String)> {
+    let (trajectory, values) = (&segment.trajectory, &motion.values);
+    let article = &problem.task.articles[motion.article];
+    let wrong = |message: &str| Err((0.0, message.to_owned()));
+    if (values.start()[0] - begins.value).abs() > JUMP {
+        return wrong("the article is not where its motion starts");
+    }
+    if values.times() != trajectory.times() || values.dofs() != [article.dof] {
+        return wrong("the motions of robot and article do not belong together");
+    }
+    let timed = TimedPath { times: values.times().to_vec(), knots: values.knots().to_vec() };
+    if timed.limit_use(&motion_limits(&article.model, values.dofs())) > LIMIT_USE {
+        return wrong("a speed limit of the article is exceeded");
+    }
+    let Some(mechanism) = Mechanism::of_article(article) else {
+        return wrong("the article's joint neither turns nor slides");
+    };
+    let joints = replay_space(problem, trajectory);
+    let first_obstacle = problem.task.objects.len();
+    let (scene, dofs, step) = (begins.scene, trajectory.dofs(), options.certified_step);
+    let of_article = (article, first_obstacle);
+    let mut checker =
+        ArticleChecker::new(scene, &joints, dofs, of_article, begins.q, rules, step).without_clearance();
+    let opens = values.end()[0] > values.start()[0];
+    let cages: Vec<&Cage> =
+        problem.cages[motion.article].iter().filter(|cage| cage.hold.moves(opens)).collect();
+    let sample = |time: f64| [trajectory.sample(time).positions, values.sample(time).positions].concat();
+    for (time, at) in dense_states(&checker, trajectory.times(), &sample, step) {
+        checker.state(&at).map_err(|by| (time, checker.describe(by)))?;
+        let mut q = begins.q.clone();
+        q.set(dofs, &at[..dofs.len()]);
+        let part = mechanism.world_from_part(at[dofs.len()]);
+        let tool = problem.arm.world_from_tool(&q.select(problem.arm.dofs()));
+        let part_from_tool = part.inv_mul(&tool);
+        let near = |cage: &&&Cage| {
+            let grip = &cage.grasp.part_from_tool;
+            (grip.translation.vector - part_from_tool.translation.vector).norm() <= options.caging.shift
+                && grip.rotation.angle_to(&part_from_tool.rotation) <= options.caging.turn
+        };
+        if !cages.iter().any(|cage| near(&cage)) {
+            return Err((time, "the gripper leaves the cage".into()));
+        }
+    }
+    Ok(checker.states())
+}
+
+/// The space of the joints that a trajectory moves.
+fn replay_space(problem: &Manipulation<'_>, trajectory: &Trajectory) -> Space {
+    let axis = |dof: &robotc_core::DofIdx| {
+        let d = &problem.task.robot.model.dofs()[*dof];
+        // Values of limits may be exceeded by rounding.
+        Axis { lower: d.lower - 1e-9, upper: d.upper + 1e-9, wraps: d.continuous, weight: 1.0 }
+    };
+    Space::new(trajectory.dofs().iter().map(axis).collect())
+}
+
+/// Times and states of a motion so that no point travels more than the resolution in between; those at `times` are among
+/// them.
+fn dense_states<C: EdgeChecker>(
+    checker: &C,
+    times: &[f64],
+    sample: &dyn Fn(f64) -> Vec<f64>,
     resolution: f64,
 ) -> Vec<(f64, Vec<f64>)> {
-    let (times, knots) = (trajectory.times(), trajectory.knots());
-    let mut states = vec![(0.0, trajectory.start().to_vec())];
-    for (t, k) in times.windows(2).zip(knots.windows(2)) {
-        let difference: Vec<f64> = k[0].positions.iter().zip(&k[1].positions).map(|(a, b)| b - a).collect();
+    let mut states = vec![(0.0, sample(0.0))];
+    let mut from = states[0].1.clone();
+    for t in times.windows(2) {
+        let to = sample(t[1]);
+        let difference: Vec<f64> = from.iter().zip(&to).map(|(a, b)| b - a).collect();
         let pieces = (checker.travel(&difference) / resolution).ceil().max(1.0) as usize;
         for i in 1..=pieces {
             let time = t[0] + (t[1] - t[0]) * i as f64 / pieces as f64;
-            states.push((time, trajectory.sample(time).positions));
+            states.push((time, sample(time)));
         }
+        from = to;
     }
     states
 }

@@ -6,6 +6,9 @@
 
 mod certify;
 mod destinations;
+mod free_motion;
+mod maker;
+mod opening;
 mod options;
 mod picks;
 mod placings;
@@ -21,7 +24,8 @@ pub use certify::{Uncertified, certify};
 pub use destinations::destination_poses;
 pub use options::{ManipulationOptions, Measures};
 pub use plan::{
-    Choice, Event, GoalFailure, Held, Nearest, Plan, Segment, SegmentKind, SkippedGoal, Stage, Tried,
+    ArticleMotion, Choice, Event, GoalFailure, Held, Nearest, OpenChoice, PlaceChoice, Plan, Segment,
+    SegmentKind, SkippedGoal, Stage, Tried,
 };
 pub use problem::{Manipulation, gripper_links};
 pub use rejections::{Cause, Filter, Rejections};

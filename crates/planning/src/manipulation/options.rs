@@ -3,6 +3,7 @@
 use robotc_core::{Configuration, LinkIdx};
 
 use crate::arm::ArmModel;
+use crate::caging::{CagedObjectOptions, RandomizedOptions};
 use crate::cartesian::LineOptions;
 use crate::rrt::RrtOptions;
 use crate::scene::Scene;
@@ -58,6 +59,13 @@ pub struct ManipulationOptions {
     /// How deep a held object may seem to be in what it stands on, as a fraction of its diagonal: the convex parts that
     /// cover it stand off its surface a little.
     pub sink: f64,
+    /// Changes of grip while an article is moved. Default of its shift: a fifth of the hand.
+    pub caging: CagedObjectOptions,
+    /// The searches for ways of an article.
+    pub caging_search: RandomizedOptions,
+    /// How deep the gripper may seem to be in a handle that it holds loosely: arm and fingers yield. Default: a fiftieth of
+    /// the hand.
+    pub give: f64,
     /// Destinations tried for each goal.
     pub destinations: usize,
     /// Candidate placings looked at for each grasp before it counts as hopeless.
@@ -88,6 +96,9 @@ impl ManipulationOptions {
             contact: 0.07 * hand,
             lift: 0.55 * hand,
             sink: 0.04,
+            caging: CagedObjectOptions { shift: 0.2 * hand, ..CagedObjectOptions::default() },
+            caging_search: RandomizedOptions::default(),
+            give: 0.02 * hand,
             destinations: 64,
             placings: 40,
             free_samples: 8,
@@ -113,7 +124,8 @@ mod tests {
         let toy = ManipulationOptions::new(&Measures { reach: 0.14, hand: 0.015 });
         let lengths = |o: &ManipulationOptions| {
             let ManipulationOptions { margin, resolution, fine_resolution, certified_step, .. } = *o;
-            let motions = [o.approach, o.contact, o.lift, o.line.step, o.line.tolerance];
+            let motions =
+                [o.approach, o.contact, o.lift, o.line.step, o.line.tolerance, o.caging.shift, o.give];
             [&[margin, resolution, fine_resolution, certified_step], &motions[..]].concat()
         };
         for (large, small) in lengths(&arm).iter().zip(lengths(&toy)) {

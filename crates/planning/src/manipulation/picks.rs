@@ -123,7 +123,7 @@ impl<'a, 's> PickSampler<'a, 's> {
         self.looked_at += usize::from(self.round == 0);
         let world_from_tool = self.scene.world_from_body(self.cx.body()) * grasp.object_from_tool;
         if self.round == 0
-            && let Err((filter, cause)) = self.hand_check(grasp, &world_from_tool)
+            && let Err((filter, cause)) = hand_check(&self.cx, self.scene, grasp, &world_from_tool)
         {
             self.rejections.add_because(filter, cause);
             self.alive.remove(self.cursor);
@@ -141,13 +141,6 @@ impl<'a, 's> PickSampler<'a, 's> {
         let best = solutions.into_iter().take(self.cx.options.branches);
         self.branches = best.map(|q| (index, q)).rev().collect();
         Ok(None)
-    }
-
-    fn hand_check(&self, grasp: &Grasp, world_from_tool: &Pose) -> Result<(), (Filter, Cause)> {
-        hand_is_free(&self.cx, self.scene, grasp, world_from_tool).map_err(|r| (Filter::HandAtGrasp, r))?;
-        let rules = self.cx.touching();
-        hand_at(&self.cx, self.scene, &grasp.closed, world_from_tool, &rules)
-            .map_err(|r| (Filter::ClosedHand, r))
     }
 
     /// All straight motions of one branch.
@@ -229,6 +222,17 @@ impl GoalSampler for PickSampler<'_, '_> {
         self.handed_out += 1;
         Ok(GoalDraw::Goal(goal))
     }
+}
+
+/// Whether the gripper alone is free at a grasp and on its approach, open and closed.
+pub(super) fn hand_check(
+    cx: &GoalContext<'_>,
+    scene: &Scene,
+    grasp: &Grasp,
+    world_from_tool: &Pose,
+) -> Result<(), (Filter, Cause)> {
+    hand_is_free(cx, scene, grasp, world_from_tool).map_err(|r| (Filter::HandAtGrasp, r))?;
+    hand_at(cx, scene, &grasp.closed, world_from_tool, &cx.touching()).map_err(|r| (Filter::ClosedHand, r))
 }
 
 /// A search for placings of the object held by `grasp`, with the arm coming from `near`.

@@ -28,6 +28,8 @@ pub enum SegmentKind {
     Release,
     /// Straight motion of the open gripper away from the object.
     Retreat,
+    /// The arm moves an article in a loose grip.
+    Open,
 }
 
 impl fmt::Display for SegmentKind {
@@ -42,6 +44,7 @@ impl fmt::Display for SegmentKind {
             Self::Lower => "lower",
             Self::Release => "release",
             Self::Retreat => "retreat",
+            Self::Open => "open",
         })
     }
 }
@@ -73,6 +76,15 @@ pub enum Event {
     },
 }
 
+/// What an article does during a segment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ArticleMotion {
+    /// Position in `Task::articles`.
+    pub article: usize,
+    /// The value of its joint, at the times of the segment's trajectory.
+    pub values: Trajectory,
+}
+
 /// One motion of a plan. Degrees of freedom that its trajectory does not name stay where they are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segment {
@@ -84,6 +96,8 @@ pub struct Segment {
     pub trajectory: Trajectory,
     /// What the gripper holds during the motion.
     pub held: Option<Held>,
+    /// The article that moves with the gripper.
+    pub article: Option<ArticleMotion>,
     /// What happens at the end.
     pub event: Option<Event>,
 }
@@ -122,7 +136,26 @@ impl Plan {
 
 /// How one goal is reached.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Choice {
+pub enum Choice {
+    /// An object was put down.
+    Place(PlaceChoice),
+    /// An article was moved.
+    Open(OpenChoice),
+}
+
+impl Choice {
+    /// Position in `Task::goals`.
+    pub fn goal(&self) -> usize {
+        match self {
+            Self::Place(choice) => choice.goal,
+            Self::Open(choice) => choice.goal,
+        }
+    }
+}
+
+/// How an object is put down.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlaceChoice {
     /// Position in `Task::goals`.
     pub goal: usize,
     /// Position in `Task::objects`.
@@ -131,6 +164,21 @@ pub struct Choice {
     pub grasp: usize,
     /// Where the object is put.
     pub world_from_object: Pose,
+    /// What was looked at and not taken on the way.
+    pub rejections: Rejections,
+}
+
+/// How an article is moved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OpenChoice {
+    /// Position in `Task::goals`.
+    pub goal: usize,
+    /// Position in `Task::articles`.
+    pub article: usize,
+    /// Where its joint ends up.
+    pub value: f64,
+    /// Positions in the article's set of loose grips, at the steps of its way.
+    pub grips: Vec<usize>,
     /// What was looked at and not taken on the way.
     pub rejections: Rejections,
 }
@@ -146,6 +194,8 @@ pub enum Stage {
     Reach,
     /// No path from any grasp to the destination.
     Carry,
+    /// No way of the article in any of its grips.
+    Open,
 }
 
 /// How many grasps a search got through.
@@ -221,11 +271,13 @@ impl fmt::Display for GoalFailure {
             (None, Stage::Grasps) => write!(f, "no grasp of {object} can be used: {message}")?,
             (None, Stage::Reach) => write!(f, "no way to {object}: {message}")?,
             (None, Stage::Carry) => write!(f, "no way to carry {object} to its destination: {message}")?,
+            (None, Stage::Open) => write!(f, "no way to move {object}: {message}")?,
             (Some(interrupt), stage) => {
                 let doing = match stage {
                     Stage::Start | Stage::Grasps => "looking for a grasp of",
                     Stage::Reach => "looking for a way to",
                     Stage::Carry => "looking for a way to carry",
+                    Stage::Open => "looking for a way to move",
                 };
                 write!(f, "{interrupt} while {doing} {object}: {message}")?;
             }

@@ -3,10 +3,11 @@
 use robotc_core::ids::Idx;
 use robotc_core::robot::{Gripper, Robot};
 use robotc_core::task::{Goal, Task};
-use robotc_core::{BodyIdx, Configuration, DofIdx, Kinematics, LinkIdx, Pose};
+use robotc_core::{BodyIdx, Configuration, DofIdx, Kinematics, LinkIdx, Pose, RobotModel};
 
 use super::options::ManipulationOptions;
 use crate::arm::ArmModel;
+use crate::caging::Cage;
 use crate::grasp::GraspSet;
 use crate::reachability::Reachability;
 use crate::scene::{Grip, Rules, Scene};
@@ -27,10 +28,33 @@ pub struct Manipulation<'a> {
     pub scene: &'a Scene,
     /// The grasp set of each object of the task, in their order.
     pub grasps: &'a [&'a GraspSet],
+    /// The loose grips of each article of the task, in their order.
+    pub cages: &'a [&'a [Cage]],
     /// What is known about the arm's reach; grasps are tried in its order.
     pub reachability: Option<&'a dyn Reachability>,
     /// Where the robot is now.
     pub start: &'a Configuration,
+}
+
+impl Manipulation<'_> {
+    /// The scene's body of an obstacle of the task.
+    pub(super) fn obstacle(&self, obstacle: usize) -> BodyIdx {
+        BodyIdx::new(self.task.objects.len() + obstacle)
+    }
+
+    /// The handle of an article, as a position in the scene; its first link when the handle has no shape.
+    pub(super) fn handle_of(&self, article: usize) -> usize {
+        let article = &self.task.articles[article];
+        let handle = article.bodies.iter().find(|(link, _)| *link == article.handle);
+        self.obstacle(handle.or(article.bodies.first()).map_or(0, |(_, obstacle)| *obstacle)).index()
+    }
+
+    /// Puts what an article moves where its joint at `value` takes it.
+    pub(super) fn move_article(&self, scene: &mut Scene, article: usize, value: f64) {
+        for (obstacle, world_from_body) in self.task.articles[article].moved_bodies(value) {
+            scene.place(self.obstacle(obstacle), world_from_body);
+        }
+    }
 }
 
 /// One goal of the task, and what its planning needs at hand.
@@ -40,7 +64,7 @@ pub(super) struct GoalContext<'a> {
     pub(super) options: &'a ManipulationOptions,
     /// Position of the goal in the task.
     pub(super) number: usize,
-    /// Position of the object in the task, the scene and the grasp sets.
+    /// Position of the object in the task, the scene and the grasp sets; of an article, its handle in the scene.
     pub(super) object: usize,
     /// Position of the gripper in the robot.
     pub(super) gripper: usize,
@@ -69,7 +93,7 @@ impl<'a> GoalContext<'a> {
     }
 
     pub(super) fn object_name(&self) -> &'a str {
-        &self.problem.task.objects[self.object].name
+        self.problem.task.name_of(self.goal())
     }
 
     /// Rules of free motion.
@@ -82,6 +106,7 @@ impl<'a> GoalContext<'a> {
         Rules {
             margin: self.options.fine_margin(),
             target: Some(self.body()),
+            give: matches!(self.goal(), Goal::Open { .. }).then_some(0.5 * self.options.give),
             gripper: self.gripper_links.to_vec(),
             ..Rules::default()
         }
@@ -141,9 +166,14 @@ pub(super) fn finger_space(robot: &Robot, gripper: usize) -> Space {
     Space::new(robot.grippers[gripper].dofs.iter().map(axis).collect())
 }
 
+/// The space of an arm and then the fingers.
+pub(super) fn with_fingers_space(arm: &Space, fingers: &Space) -> Space {
+    Space::new(arm.axes().iter().chain(fingers.axes()).copied().collect())
+}
+
 /// Speed limits of these degrees of freedom.
-pub(super) fn motion_limits(robot: &Robot, dofs: &[DofIdx]) -> MotionLimits {
-    let dynamics = |dof: &DofIdx| robot.model.dofs()[*dof].dynamics;
+pub(super) fn motion_limits(model: &RobotModel, dofs: &[DofIdx]) -> MotionLimits {
+    let dynamics = |dof: &DofIdx| model.dofs()[*dof].dynamics;
     MotionLimits {
         velocity: dofs.iter().map(|d| dynamics(d).velocity).collect(),
         acceleration: dofs.iter().map(|d| dynamics(d).acceleration).collect(),

@@ -3,29 +3,29 @@
 use std::fmt;
 
 use robotc_core::ids::Idx;
-use robotc_core::task::Goal;
-use robotc_core::{BodyIdx, Configuration, Pose, Seed, Trajectory};
+use robotc_core::task::{Article, Goal};
+use robotc_core::{BodyIdx, Configuration, Pose, Seed};
 use thiserror::Error;
 
 use super::destinations::destination_poses;
+use super::free_motion::{FreeMotion, start_rules};
+use super::maker::Maker;
+use super::opening::{ArticleWay, plan_opening};
 use super::options::ManipulationOptions;
 use super::picks::{Pick, PickSampler, placings, upright};
 use super::placings::{Destinations, Placing, PlacingSampler};
 use super::plan::{
-    Choice, Event, GoalFailure, Held, Nearest, Plan, Segment, SegmentKind, SkippedGoal, Stage, Tried,
+    Choice, Event, GoalFailure, Held, Nearest, OpenChoice, PlaceChoice, Plan, Segment, SegmentKind,
+    SkippedGoal, Stage, Tried,
 };
-use super::problem::{GoalContext, Manipulation, finger_space, gripper_links, motion_limits};
+use super::problem::{GoalContext, Manipulation, finger_space, gripper_links};
 use super::rejections::{Filter, Rejections};
-use super::stretch::{cause, fine_checker};
+use super::stretch::cause;
 use crate::budget::{Budget, Interrupt};
 use crate::constraint::Constraint;
-use crate::edge::{EdgeChecker, Obstruction};
-use crate::goal::GoalSampler;
 use crate::grasp::Grasp;
-use crate::rrt::{RrtConnect, RrtFailure, RrtFailureReason, RrtSolution, RrtStatistics};
-use crate::scene::{RobotChecker, Rules, Scene};
-use crate::smooth::smooth;
-use crate::timing::{MotionLimits, time_path};
+use crate::rrt::{RrtConnect, RrtFailureReason, RrtStatistics};
+use crate::scene::Scene;
 
 /// Told what the planner does, for progress, timing and display. All methods do nothing unless overridden.
 pub trait Observer {
@@ -72,10 +72,10 @@ impl fmt::Display for Reasons<'_> {
 }
 
 /// A goal's plan and the situation after it.
-struct Reached {
-    segments: Vec<Segment>,
-    choice: Choice,
-    q: Configuration,
+pub(super) struct Reached {
+    pub(super) segments: Vec<Segment>,
+    pub(super) choice: Choice,
+    pub(super) q: Configuration,
 }
 
 /// Plans all goals of the task, in order; one that fails is tried again after the others, when they have made room.
@@ -97,6 +97,7 @@ pub fn pick_and_place(
 
     let mut scene = problem.scene.clone();
     let mut q = problem.start.clone();
+    let mut values: Vec<f64> = problem.task.articles.iter().map(Article::value).collect();
     let mut plan = Plan::default();
     let mut pending: Vec<usize> = (0..problem.task.goals.len()).collect();
     for round in 0.. {
@@ -104,21 +105,38 @@ pub fn pick_and_place(
         let before = pending.len();
         for &number in &pending {
             observer.goal(number);
-            let Goal::Place { object, .. } = problem.task.goals[number];
             let cx = GoalContext {
                 problem: *problem,
                 options,
                 number,
-                object,
+                object: match problem.task.goals[number] {
+                    Goal::Place { object, .. } => object,
+                    Goal::Open { article, .. } => problem.handle_of(article),
+                },
                 gripper,
                 gripper_links: &links,
                 finger_space: &fingers,
             };
             let seed = seed.split("goal").at(number as u64).at(round);
-            match plan_goal(&cx, &scene, &q, budget, seed, observer) {
+            let reached = match problem.task.goals[number] {
+                Goal::Place { .. } => plan_goal(&cx, &scene, &q, budget, seed, observer),
+                Goal::Open { article, to } => {
+                    let way = ArticleWay { article, from: values[article], to };
+                    plan_opening(&cx, &scene, &q, way, budget, seed, observer)
+                }
+            };
+            match reached {
                 Ok(reached) => {
                     reached.segments.iter().for_each(|s| observer.segment(s));
-                    scene.place(BodyIdx::new(object), reached.choice.world_from_object);
+                    match reached.choice {
+                        Choice::Place(PlaceChoice { object, world_from_object, .. }) => {
+                            scene.place(BodyIdx::new(object), world_from_object);
+                        }
+                        Choice::Open(OpenChoice { article, value, .. }) => {
+                            values[article] = value;
+                            problem.move_article(&mut scene, article, value);
+                        }
+                    }
                     q = reached.q;
                     plan.segments.extend(reached.segments);
                     plan.choices.push(reached.choice);
@@ -154,7 +172,9 @@ fn plan_goal(
     observer: &mut dyn Observer,
 ) -> Result<Reached, Box<GoalFailure>> {
     stands_free(cx, scene)?;
-    let Goal::Place { destination, keep_upright, .. } = cx.goal();
+    let Goal::Place { destination, keep_upright, .. } = cx.goal() else {
+        unreachable!("goals to place an object come here")
+    };
     let set = cx.problem.grasps[cx.object];
     let poses = destination_poses(destination, cx.options.destinations, &mut seed.split("destination").rng());
     let mut destinations = Destinations::new(poses);
@@ -306,87 +326,6 @@ fn plan_carry(
     }
 }
 
-/// Rules of free motion; without a margin when the robot already stands too near to something to keep it.
-fn start_rules(cx: &GoalContext<'_>, scene: &Scene, q: &Configuration, start: &[f64]) -> Rules {
-    let rules = cx.free(None);
-    let keeps = fine_checker(cx, scene, q, rules.clone()).state(start);
-    match keeps {
-        Err(Obstruction::Contact(_)) => Rules { margin: 0.0, ..rules },
-        _ => rules,
-    }
-}
-
-/// A search for a free motion of the arm.
-struct FreeMotion<'c, 'a> {
-    cx: &'c GoalContext<'a>,
-    scene: &'c Scene,
-    q: &'c Configuration,
-    rules: Rules,
-    constraint: Option<&'c dyn Constraint>,
-    kind: SegmentKind,
-}
-
-impl<'c> FreeMotion<'c, '_> {
-    fn checker(&self) -> RobotChecker<'c> {
-        let arm = self.cx.problem.arm;
-        let resolution = self.cx.options.resolution;
-        RobotChecker::new(self.scene, arm.space(), arm.dofs(), self.q, self.rules.clone(), resolution)
-            .with_constraint(self.constraint)
-    }
-
-    fn search(
-        &mut self,
-        from: &[f64],
-        goals: &mut dyn GoalSampler,
-        budget: &Budget<'_>,
-        rng: &mut robotc_core::rng::Rng,
-        observer: &mut dyn Observer,
-    ) -> Result<RrtSolution, RrtFailure> {
-        let mut search = RrtConnect::new(from);
-        let options = &self.cx.options.rrt;
-        let outcome = search.run(&mut self.checker(), self.constraint, goals, options, budget, rng);
-        let statistics = match &outcome {
-            Ok(solution) => &solution.statistics,
-            Err(failure) => &failure.statistics,
-        };
-        observer.searched(self.cx.number, self.kind, &search, statistics);
-        outcome
-    }
-
-    fn smoothed(
-        &self,
-        path: Vec<Vec<f64>>,
-        budget: &Budget<'_>,
-        rng: &mut robotc_core::rng::Rng,
-    ) -> Vec<Vec<f64>> {
-        smooth(&mut self.checker(), path, &self.cx.options.smoothers, budget, rng)
-    }
-
-    /// The failure with what stopped the edges, and how near it came.
-    fn failed(&self, failure: &RrtFailure) -> Box<GoalFailure> {
-        let stage = if self.kind == SegmentKind::Reach { Stage::Reach } else { Stage::Carry };
-        let mut missed = GoalFailure::new(self.cx.object_name(), stage);
-        let done = &failure.statistics;
-        missed.message = match failure.reason {
-            RrtFailureReason::Interrupted(_) => {
-                format!("{} iterations towards {} goals", done.iterations, done.goals)
-            }
-            RrtFailureReason::Start(by) => format!("the start is not free: {}", cause(self.scene, by)),
-            _ => failure.to_string(),
-        };
-        if let RrtFailureReason::Interrupted(interrupt) = failure.reason {
-            missed.interrupt = Some(interrupt);
-        }
-        missed.rejections.edges = done.blocked.iter().map(|(&by, &n)| (cause(self.scene, by), n)).collect();
-        missed.nearest = done.nearest.as_ref().map(|gap| {
-            let arm = self.cx.problem.arm;
-            let apart = arm.world_from_tool(&gap.from_start).inv_mul(&arm.world_from_tool(&gap.from_goal));
-            Nearest { distance: apart.translation.vector.norm(), angle: apart.rotation.angle() }
-        });
-        missed
-    }
-}
-
 /// All paths of one goal.
 struct Motions {
     reach: Vec<Vec<f64>>,
@@ -405,7 +344,6 @@ impl Motions {
         rejections: Rejections,
     ) -> Reached {
         let Motions { reach, pick, carry, placing } = self;
-        let robot = cx.robot();
         let gripper = cx.gripper();
         let grip = cx.grip(&grasp.object_from_tool);
         let mut at_grasp = cx.with_fingers(q, &grasp.closed);
@@ -421,8 +359,7 @@ impl Motions {
         let preshape = &gripper.preshapes[grasp.preshape].values;
         let world_from_object: Pose = placing.world_from_object;
         let there = scene.with_body_at(cx.body(), world_from_object);
-        let finger_limits = motion_limits(robot, &gripper.dofs);
-        let mut made = Maker { cx, q: q.clone(), finger_limits, segments: Vec::new() };
+        let mut made = Maker::new(cx, q);
 
         made.arm(SegmentKind::Reach, &reach, scene, cx.free(None), None);
         if now != *preshape {
@@ -440,66 +377,13 @@ impl Motions {
         made.fingers(SegmentKind::Release, &grasp.closed, preshape, &there, None);
         made.arm(SegmentKind::Retreat, &placing.retreat, &there, cx.touching(), None);
 
-        let choice =
-            Choice { goal: cx.number, object: cx.object, grasp: pick.grasp, world_from_object, rejections };
+        let choice = Choice::Place(PlaceChoice {
+            goal: cx.number,
+            object: cx.object,
+            grasp: pick.grasp,
+            world_from_object,
+            rejections,
+        });
         Reached { segments: made.segments, choice, q: made.q }
-    }
-}
-
-/// Turns paths into segments, one after the other.
-struct Maker<'c, 'a> {
-    cx: &'c GoalContext<'a>,
-    /// Where the robot is after the segments so far.
-    q: Configuration,
-    finger_limits: MotionLimits,
-    segments: Vec<Segment>,
-}
-
-impl Maker<'_, '_> {
-    fn arm(
-        &mut self,
-        kind: SegmentKind,
-        path: &[Vec<f64>],
-        scene: &Scene,
-        rules: Rules,
-        held: Option<&Held>,
-    ) {
-        let arm = self.cx.problem.arm;
-        // Continuous joints go on from where they are, not from an alias.
-        let mut path = path.to_vec();
-        path[0] = self.q.select(arm.dofs());
-        let resolution = self.cx.options.fine_resolution;
-        let mut checker = RobotChecker::new(scene, arm.space(), arm.dofs(), &self.q, rules, resolution);
-        let timed = time_path(&mut checker, &path, arm.limits(), &self.cx.options.timing);
-        let trajectory = timed
-            .into_trajectory(arm.dofs().to_vec(), arm.names().to_vec())
-            .expect("times of a timed path grow");
-        self.push(kind, trajectory, held);
-    }
-
-    fn fingers(&mut self, kind: SegmentKind, from: &[f64], to: &[f64], scene: &Scene, held: Option<&Held>) {
-        let cx = self.cx;
-        let dofs = &cx.gripper().dofs;
-        let rules = cx.touching();
-        let resolution = cx.options.fine_resolution;
-        let mut checker = RobotChecker::new(scene, cx.finger_space, dofs, &self.q, rules, resolution);
-        let path = [from.to_vec(), to.to_vec()];
-        let timed = time_path(&mut checker, &path, &self.finger_limits, &cx.options.timing);
-        let model = &cx.robot().model;
-        let names = dofs.iter().map(|&d| model.dofs()[d].name.clone()).collect();
-        let trajectory = timed.into_trajectory(dofs.clone(), names).expect("times of a timed path grow");
-        self.push(kind, trajectory, held);
-    }
-
-    fn push(&mut self, kind: SegmentKind, trajectory: Trajectory, held: Option<&Held>) {
-        self.q.set(trajectory.dofs(), trajectory.end());
-        let goal = self.cx.number;
-        self.segments.push(Segment { kind, goal, trajectory, held: held.cloned(), event: None });
-    }
-
-    fn event(&mut self, event: Event) {
-        if let Some(segment) = self.segments.last_mut() {
-            segment.event = Some(event);
-        }
     }
 }

@@ -124,6 +124,7 @@ fn problem<'a>(bench: &'a Bench, grasps: &'a [&'a GraspSet]) -> Manipulation<'a>
         arm: &bench.arm,
         scene: &bench.scene,
         grasps,
+        cages: &[],
         reachability: None,
         start: &bench.task.start,
     }
@@ -163,7 +164,8 @@ fn a_box_goes_over_a_wall() {
             let kinds: Vec<SegmentKind> = plan.segments.iter().map(|s| s.kind).collect();
             use SegmentKind::*;
             assert_eq!(kinds, [Reach, Approach, Grasp, Lift, Carry, Lower, Release, Retreat]);
-            let put = plan.choices[0].world_from_object.translation.vector;
+            let Choice::Place(choice) = &plan.choices[0] else { panic!("an object is put down") };
+            let put = choice.world_from_object.translation.vector;
             assert!((put - Vector3::new(0.6, 0.22, STANDING)).norm() < 1e-12);
             assert!(plan.duration() > 1.0 && plan.duration() < 30.0, "{}", plan.duration());
         }
@@ -194,7 +196,7 @@ fn an_occupied_place_is_cleared_by_a_later_goal() {
         [([0.6, -0.2], place(0, [0.6, 0.2], true, None)), ([0.6, 0.2], place(1, [0.6, 0.45], true, None))];
     let plan = run(&bench(false, &moves, &[]), 1, &Budget::unlimited()).unwrap_or_else(|e| panic!("{e}"));
     assert!(plan.is_complete());
-    assert_eq!(plan.choices.iter().map(|c| c.goal).collect::<Vec<_>>(), [1, 0]);
+    assert_eq!(plan.choices.iter().map(Choice::goal).collect::<Vec<_>>(), [1, 0]);
 }
 
 #[test]

@@ -26,7 +26,7 @@ pub struct RobotChecker<'a> {
 }
 
 /// Clearance beyond this many times the resolution is not looked for: looking would cost more than it saves.
-const ROOM: f64 = 10.0;
+pub(super) const ROOM: f64 = 10.0;
 
 impl<'a> RobotChecker<'a> {
     /// Motions of `dofs`, the coordinates of `space`, from configuration `q` on; bodies travel no more than

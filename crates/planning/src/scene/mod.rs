@@ -5,6 +5,7 @@
 //! state, with which [edge checks](crate::edge) skip what cannot collide. It is counted in the travel of the fastest
 //! point: a link that moves at a third of that pace has three times the room.
 
+mod article;
 mod checker;
 mod mobile;
 mod shape;
@@ -18,6 +19,7 @@ use robotc_core::model::Geometry;
 use robotc_core::world::World;
 use robotc_core::{BodyIdx, Configuration, Kinematics, LinkIdx, LinkPoses, Pose, TypedVec};
 
+pub use article::ArticleChecker;
 pub use checker::RobotChecker;
 pub use mobile::MobileChecker;
 use shape::Shape;
@@ -66,6 +68,8 @@ pub struct Rules {
     pub gripper: Vec<LinkIdx>,
     /// A body that the links of the gripper may touch: the target of a grasp.
     pub target: Option<BodyIdx>,
+    /// How deep these links may be in the target, metres. `None`: as deep as it looks.
+    pub give: Option<f64>,
     /// How deep the held body may be in other bodies, metres: it stands on one when it is picked up and put down.
     /// `None` asks for the margin.
     pub sink: Option<f64>,
@@ -242,17 +246,20 @@ impl Scene {
                 number: link.index(),
             };
             let of_gripper = rules.gripper.binary_search(&link).is_ok();
-            let ignored = |body: BodyIdx| {
-                rules.held.as_ref().is_some_and(|grip| grip.body == body)
-                    || (of_gripper && rules.target == Some(body))
+            let depth = |body: BodyIdx| {
+                if rules.held.as_ref().is_some_and(|grip| grip.body == body) {
+                    Some(f64::INFINITY)
+                } else {
+                    (of_gripper && rules.target == Some(body)).then(|| rules.give.unwrap_or(f64::INFINITY))
+                }
             };
-            self.one_against_bodies(&placed, rules.margin, None, ignored, pace, &mut clearance)?;
+            self.one_against_bodies(&placed, rules.margin, depth, pace, &mut clearance)?;
         }
         if let Some(grip) = &rules.held {
             let world_from_link = world_from_robot * poses.root_from(grip.link);
             let held = self.held(grip, world_from_link * grip.link_from_body);
-            let ignored = |body: BodyIdx| body == grip.body;
-            self.one_against_bodies(&held, rules.margin, rules.sink, ignored, movers.held, &mut clearance)?;
+            let depth = |body: BodyIdx| if body == grip.body { Some(f64::INFINITY) } else { rules.sink };
+            self.one_against_bodies(&held, rules.margin, depth, movers.held, &mut clearance)?;
         }
         Ok(clearance)
     }
@@ -261,7 +268,46 @@ impl Scene {
     pub fn body_against_bodies(&self, body: BodyIdx, world_from_body: Pose, sink: f64) -> Result<(), Touch> {
         let shape = &self.bodies[body].shape;
         let placed = Placed { shape, pose: world_from_body, number: self.links.len() + body.index() };
-        self.one_against_bodies(&placed, 0.0, Some(sink), |other| other == body, 1.0, &mut 0.0)
+        let depth = |other| Some(if other == body { f64::INFINITY } else { sink });
+        self.one_against_bodies(&placed, 0.0, depth, 1.0, &mut 0.0)
+    }
+
+    /// Whether a body, where it is, is farther than `margin` metres from all others but those `beside` it; if so, its clearance,
+    /// cut at `room`.
+    pub(crate) fn body_clear(
+        &self,
+        body: BodyIdx,
+        beside: impl Fn(BodyIdx) -> bool,
+        margin: f64,
+        room: f64,
+    ) -> Result<f64, Touch> {
+        let Body { shape, world_from_body, .. } = &self.bodies[body];
+        let placed = Placed { shape, pose: *world_from_body, number: self.links.len() + body.index() };
+        let depth = |other| (other == body || beside(other)).then_some(f64::INFINITY);
+        let mut clearance = room;
+        self.one_against_bodies(&placed, margin, depth, 1.0, &mut clearance)?;
+        Ok(clearance)
+    }
+
+    /// Whether some links touch some bodies; if not, the clearance, cut at `room`.
+    pub(crate) fn links_beside(
+        &self,
+        links: &[LinkIdx],
+        poses: &LinkPoses,
+        bodies: impl Iterator<Item = BodyIdx> + Clone,
+        room: f64,
+    ) -> Result<f64, Touch> {
+        let mut clearance = room;
+        for &link in links {
+            let pose = self.world_from_robot * poses.root_from(link);
+            let placed = Placed { shape: &self.links[link], pose, number: link.index() };
+            for body in bodies.clone() {
+                let Body { shape, world_from_body, .. } = &self.bodies[body];
+                let number = self.links.len() + body.index();
+                compare(&placed, &Placed { shape, pose: *world_from_body, number }, 1.0, &mut clearance)?;
+            }
+        }
+        Ok(clearance)
     }
 
     /// Whether links touch each other or the held body; if not, the clearance, cut at `room`.
@@ -295,24 +341,28 @@ impl Scene {
         Placed { shape: &self.bodies[grip.body].shape, pose, number }
     }
 
-    /// Lowers `clearance` to that of one mover, or finds what it touches.
+    /// Lowers `clearance` to that of one mover, or finds what it touches. `depth` says how deep it may be in a body, metres;
+    /// where it says nothing, the mover keeps the margin.
     fn one_against_bodies(
         &self,
         mover: &Placed<'_>,
         margin: f64,
-        sink: Option<f64>,
-        ignored: impl Fn(BodyIdx) -> bool,
+        depth: impl Fn(BodyIdx) -> Option<f64>,
         pace: f64,
         clearance: &mut f64,
     ) -> Result<(), Touch> {
-        let margin = if sink.is_some() { 0.0 } else { margin };
         let centre = mover.pose * mover.shape.centre;
         for (index, body) in self.bodies.enumerate() {
             let touch = || Touch(mover.number as u16, (self.links.len() + index.index()) as u16);
             let gap = body.shape.bounds.distance_to(&(body.body_from_world * centre)) - mover.shape.radius;
-            if gap > margin + *clearance * pace || body.shape.is_empty() || ignored(index) {
+            if gap > margin + *clearance * pace || body.shape.is_empty() {
                 continue;
             }
+            let depth = depth(index);
+            if depth == Some(f64::INFINITY) {
+                continue;
+            }
+            let margin = if depth.is_some() { 0.0 } else { margin };
             let body_from_mover = body.body_from_world * mover.pose;
             for part in &mover.shape.parts {
                 let part_centre = body_from_mover * part.centre;
@@ -324,12 +374,12 @@ impl Scene {
                         continue;
                     }
                     let gap = distance(&part.part, &body_from_mover, &other.part, &Pose::identity()).distance;
-                    let touches = match sink {
+                    let touches = match depth {
                         None => gap <= margin,
-                        Some(sink) => {
+                        Some(depth) => {
                             gap == 0.0
                                 && contact(&part.part, &body_from_mover, &other.part, &Pose::identity(), 0.0)
-                                    .is_some_and(|c| c.depth > sink)
+                                    .is_some_and(|c| c.depth > depth)
                         }
                     };
                     if touches {

@@ -36,6 +36,19 @@ impl TimedPath {
         self.knots.extend(next.knots);
     }
 
+    /// The first `count` coordinates, and the others, at the same times.
+    pub fn split(self, count: usize) -> (Self, Self) {
+        let part = |range: &dyn Fn(&[f64]) -> Vec<f64>| {
+            let knot = |k: &TrajectoryPoint| TrajectoryPoint {
+                positions: range(&k.positions),
+                velocities: range(&k.velocities),
+                accelerations: range(&k.accelerations),
+            };
+            Self { times: self.times.clone(), knots: self.knots.iter().map(knot).collect() }
+        };
+        (part(&|all| all[..count].to_vec()), part(&|all| all[count..].to_vec()))
+    }
+
     /// Seconds from start to end.
     pub fn duration(&self) -> f64 {
         self.times.last().copied().unwrap_or(0.0)

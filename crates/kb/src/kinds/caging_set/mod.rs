@@ -7,6 +7,7 @@ use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 use robotc_core::Pose;
 use robotc_core::ids::{Idx, LinkIdx};
 use robotc_planning::caging::CageGrasp;
+pub use robotc_planning::caging::{Cage, CageHold};
 use serde::{Deserialize, Serialize};
 
 use crate::codec;
@@ -26,34 +27,6 @@ use crate::record::Parts;
 /// 4.2; Diankov, Srinivasa, Ferguson and Kuffner, "Manipulation planning with caging grasps", 2008). What
 /// stops the article in one direction only can push or pull it (section 3.4).
 pub struct CagingSet;
-
-/// In which directions a loose grip moves the article.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum CageHold {
-    /// Both: the article follows wherever the hand goes.
-    Both,
-    /// Towards larger values of the joint: the article cannot stay behind.
-    Opening,
-    /// Towards smaller values of the joint.
-    Closing,
-}
-
-/// A loose grip of a gripper on an article.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Cage {
-    /// Where the tool is against the moving part: the axis frame of
-    /// [`Mechanism::of_article`](robotc_planning::Mechanism::of_article), moved with it. In contact when the closed hand holds the article
-    /// without play, too.
-    pub grasp: CageGrasp,
-    /// In which directions it moves the article.
-    pub hold: CageHold,
-    /// Position in `Gripper::preshapes` of the finger position to approach with.
-    pub preshape: usize,
-    /// Finger values of the loose grip, in the order of `Gripper::dofs`.
-    pub loose: Vec<f64>,
-    /// Finger values when closed on the article; those of the loose grip where the fingers need not close.
-    pub closed: Vec<f64>,
-}
 
 /// What a caging set is computed from.
 pub struct Inputs {
