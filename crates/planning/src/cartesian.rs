@@ -3,13 +3,15 @@
 use nalgebra::Vector6;
 use robotc_core::Pose;
 use robotc_core::ik::IkSolutions;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::arm::ArmModel;
 use crate::edge::{Blocked, EdgeChecker, Obstruction, walk_edge};
 
 /// Parameters of a straight motion.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct LineOptions {
     /// Longest way of the tool between two configurations, metres.
     pub step: f64,

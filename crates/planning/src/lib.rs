@@ -20,6 +20,7 @@ pub mod manipulation;
 pub mod mechanism;
 pub mod motion;
 pub mod placement;
+pub mod pose_goals;
 pub mod problem;
 #[cfg(test)]
 mod properties;

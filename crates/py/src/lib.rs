@@ -10,6 +10,7 @@ mod generate;
 mod inverse;
 mod knowledge;
 mod long;
+mod motion;
 mod plan;
 mod robot;
 mod solving;
@@ -30,5 +31,6 @@ fn _robotc(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(generate::generate_ik, m)?)?;
     m.add_class::<plan::Session>()?;
     m.add_class::<plan::Plan>()?;
+    m.add_class::<motion::Motion>()?;
     Ok(())
 }

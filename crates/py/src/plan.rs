@@ -1,10 +1,11 @@
 //! Sessions and plans.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::PyOSError;
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use robotc_core::Seed;
@@ -16,6 +17,7 @@ use robotc_runtime::{MotionTable, execute, view};
 use crate::arrays;
 use crate::errors::PlanError;
 use crate::long;
+use crate::motion::{self, Given, Motion, Wanted};
 
 /// A task with its artefacts.
 #[pyclass(frozen, module = "robotc")]
@@ -38,12 +40,95 @@ const CONTROL_RATE: f64 = 250.0;
 
 #[pymethods]
 impl Session {
-    /// Plans the whole task and certifies the plan. Depends on the seed alone unless the time limit ends it.
-    #[pyo3(signature = (seed = None, time_limit = 30.0))]
-    fn plan(slf: Py<Self>, py: Python<'_>, seed: Option<u64>, time_limit: f64) -> PyResult<Plan> {
+    /// The joints that free motions are of.
+    #[getter]
+    fn joint_names(&self) -> Vec<String> {
+        self.session.arm().names().to_vec()
+    }
+
+    /// Where the task starts.
+    #[getter]
+    fn start<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, &self.session.motion_problem().start)
+    }
+
+    /// `world_from_tool`, shape (4, 4).
+    fn tool<'py>(
+        &self,
+        py: Python<'py>,
+        q: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (values, expected) = (q.as_array().to_vec(), self.session.arm().dofs().len());
+        if values.len() != expected {
+            let found = values.len();
+            return Err(PyValueError::new_err(format!("expected {expected} joint values, got {found}")));
+        }
+        Ok(arrays::matrix(py, &self.session.arm().world_from_tool(&values)))
+    }
+
+    /// A problem of free motion with all defaults and no goal, as JSON.
+    fn motion_problem(&self) -> String {
+        self.session.motion_problem().write()
+    }
+
+    /// The options of `plan`, as JSON.
+    fn options(&self) -> String {
+        self.session.options().document()
+    }
+
+    /// Plans a free motion of the arm to one of many goals.
+    #[pyo3(signature = (goals = None, poses = vec![], start = None, held = None, bodies = BTreeMap::new(),
+        joints = BTreeMap::new(), problem = None, seed = None, time_limit = None, progress = None))]
+    fn plan_motion(
+        &self,
+        py: Python<'_>,
+        goals: Option<PyReadonlyArray2<'_, f64>>,
+        poses: Vec<PyReadonlyArray2<'_, f64>>,
+        start: Option<PyReadonlyArray1<'_, f64>>,
+        held: Option<(String, PyReadonlyArray2<'_, f64>)>,
+        bodies: BTreeMap<String, PyReadonlyArray2<'_, f64>>,
+        joints: BTreeMap<String, f64>,
+        problem: Option<Bound<'_, PyAny>>,
+        seed: Option<u64>,
+        time_limit: Option<f64>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Motion> {
+        let given = Given { problem, bodies, joints, held };
+        let wanted = Wanted { goals, poses, start, seed, time_limit, progress };
+        motion::plan_motion(py, &self.session, &given, &wanted)
+    }
+
+    /// Where a path first meets something, or `None`.
+    #[pyo3(signature = (path, held = None, bodies = BTreeMap::new(), joints = BTreeMap::new(), problem = None))]
+    fn validate<'py>(
+        &self,
+        py: Python<'py>,
+        path: PyReadonlyArray2<'py, f64>,
+        held: Option<(String, PyReadonlyArray2<'py, f64>)>,
+        bodies: BTreeMap<String, PyReadonlyArray2<'py, f64>>,
+        joints: BTreeMap<String, f64>,
+        problem: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Option<Bound<'py, PyDict>>> {
+        motion::validate(py, &self.session, &path, &Given { problem, bodies, joints, held })
+    }
+
+    /// Plans the whole task and certifies the plan. Depends on the seed alone unless the time limit ends it. `options` is JSON
+    /// with what differs from the defaults.
+    #[pyo3(signature = (seed = None, time_limit = 30.0, options = None))]
+    fn plan(
+        slf: Py<Self>,
+        py: Python<'_>,
+        seed: Option<u64>,
+        time_limit: f64,
+        options: Option<&str>,
+    ) -> PyResult<Plan> {
         let this = slf.get();
         let seed = Seed::new(seed.unwrap_or(this.session.task().seed));
-        let options = this.session.options();
+        let own = this.session.options();
+        let options = match options {
+            None => own,
+            Some(text) => own.with_document(text).map_err(|e| PyValueError::new_err(e.to_string()))?,
+        };
         let mut trees = TreeKeeper::default();
         let start = Instant::now();
         let (plan, seconds) = long::run(py, |interrupts| {

@@ -5,6 +5,7 @@
 
 pub mod execute;
 pub mod film;
+pub mod motion;
 pub mod picture;
 pub mod record;
 pub mod session;
@@ -13,6 +14,7 @@ pub mod view;
 
 pub use execute::{Execution, ExecutionError, execute};
 pub use film::film;
+pub use motion::{FirstContact, Motion, MotionError};
 pub use picture::picture;
 pub use session::{NoPlan, Session, SessionError};
 pub use table::MotionTable;

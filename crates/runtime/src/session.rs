@@ -6,8 +6,8 @@ use robotc_core::task::Task;
 use robotc_core::{Configuration, Kinematics, LinkIdx, LinkPoses, SerialChain, TypedVec, World};
 use robotc_ikgen::Solver;
 use robotc_kb::kinds::{
-    Cage, CagingSet, ConvexParts, GraspSet as GraspSetKind, IkSolver, LinkStatistics, Reachability, ReachabilityMap,
-    SelfCollisionPairs,
+    Cage, CagingSet, ConvexParts, GraspSet as GraspSetKind, IkSolver, LinkStatistics, Reachability,
+    ReachabilityMap, SelfCollisionPairs,
 };
 use robotc_kb::project::{OfArm, OfGripperAndArticle, OfGripperAndObject, OfRobot, OfShape};
 use robotc_kb::{Knowledge, LoadError};

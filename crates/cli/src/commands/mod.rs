@@ -10,6 +10,7 @@ mod grasps;
 mod ik;
 mod init;
 mod kb;
+mod plan;
 mod plan_build;
 mod run;
 mod schema;
@@ -31,6 +32,7 @@ pub(crate) enum Command {
     Ik(ik::Ik),
     Init(init::Init),
     Kb(kb::Kb),
+    Plan(plan::Plan),
     PlanBuild(plan_build::PlanBuild),
     Run(run::Run),
     Schema(schema::Schema),
@@ -50,6 +52,7 @@ pub(crate) fn run(command: Command) -> Outcome {
         Command::Ik(args) => ik::run(&args),
         Command::Init(args) => init::run(&args),
         Command::Kb(args) => kb::run(&args),
+        Command::Plan(args) => plan::run(&args),
         Command::PlanBuild(args) => plan_build::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Schema(args) => schema::run(&args),

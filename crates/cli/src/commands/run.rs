@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Args;
 use robotc_core::Seed;
 use robotc_kb::{Knowledge, Project};
-use robotc_planning::manipulation::{Choice, Plan, SegmentKind};
+use robotc_planning::manipulation::{Choice, ManipulationOptions, Plan, SegmentKind};
 use robotc_planning::{Budget, Interrupt};
 use robotc_runtime::film::{TreeKeeper, film};
 use robotc_runtime::record::Recording;
@@ -43,6 +43,12 @@ pub(crate) struct Run {
     /// Longest time to plan, seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 30.0)]
     time_limit: f64,
+    /// Change options of the planner: JSON with some of the keys that --write-options writes
+    #[arg(long, value_name = "FILE.json")]
+    options: Option<PathBuf>,
+    /// Write all options of the planner
+    #[arg(long, value_name = "FILE.json")]
+    write_options: Option<PathBuf>,
     #[command(flatten)]
     store: StoreArgs,
 }
@@ -68,7 +74,7 @@ pub(crate) fn run(args: &Run) -> Outcome {
     let session = session.map_err(|error| Failure::Input(error.to_string()))?;
     let seed = args.seed.unwrap_or(session.task().seed);
 
-    let options = session.options();
+    let options = options(args, &session)?;
     let mut trees = TreeKeeper::default();
     let planned = clock.stage("plan", || {
         let start = Instant::now();
@@ -109,6 +115,21 @@ pub(crate) fn run(args: &Run) -> Outcome {
     } else {
         Err(Failure::Input(outcome))
     }
+}
+
+/// The options of the robot with what the user changed.
+fn options(args: &Run, session: &Session) -> Outcome<ManipulationOptions> {
+    let mut options = session.options();
+    if let Some(path) = &args.options {
+        let wrong = |error: &dyn std::fmt::Display| Failure::Input(format!("{}: {error}", path.display()));
+        let text = std::fs::read_to_string(path).map_err(|error| wrong(&error))?;
+        options = options.with_document(&text).map_err(|error| wrong(&error))?;
+    }
+    if let Some(path) = &args.write_options {
+        write_whole(path, (options.document() + "\n").as_bytes())?;
+        say(&format!("wrote {}", path.display()));
+    }
+    Ok(options)
 }
 
 const SUCCESS: &str = "success";

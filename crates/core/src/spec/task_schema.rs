@@ -157,7 +157,11 @@ static GOAL: TableSchema = TableSchema {
             "Largest tilt of the object's z axis while it is carried. Default: no limit.",
         )
         .unit("rad"),
-        Key::optional("open", Kind::Text(Text::Name), "Move the joint of this article, with a loose grip on its handle."),
+        Key::optional(
+            "open",
+            Kind::Text(Text::Name),
+            "Move the joint of this article, with a loose grip on its handle.",
+        ),
         Key::optional(
             "to",
             Kind::Number(Range::ANY),

@@ -110,12 +110,9 @@ impl Checker<'_> {
         match present[..] {
             [_] => {}
             [] => self.diagnostics.push(
-                Diagnostic::error(
-                    "R0109",
-                    format!("`{path}` says none of {}", listed(keys.iter().copied())),
-                )
-                .at(place, "one is needed here")
-                .expected(expected),
+                Diagnostic::error("R0109", format!("`{path}` says none of {}", listed(keys.iter().copied())))
+                    .at(place, "one is needed here")
+                    .expected(expected),
             ),
             [first, ref rest @ ..] => {
                 for entry in rest {

@@ -87,11 +87,11 @@ fn meshes_stand_up_and_lie_on_surfaces() {
     let expected = [-0.002, -0.003, -0.001, 0.002, 0.003, 0.005];
     let found = [low.x, low.y, low.z, high.x, high.y, high.z];
     assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
-    let Goal::Place { destination, keep_upright, .. } = &task.goals[0];
+    let Goal::Place { destination, keep_upright, .. } = &task.goals[0] else { panic!("an object") };
     let Destination::Region { origin_height, .. } = destination else { panic!("a region") };
     assert!((origin_height - 0.001).abs() < 1e-12);
     assert_eq!(*keep_upright, Some(0.2));
-    let Goal::Place { object, destination, .. } = &task.goals[1];
+    let Goal::Place { object, destination, .. } = &task.goals[1] else { panic!("an object") };
     assert_eq!(*object, 1);
     assert!(matches!(destination, Destination::Pose { any_yaw: true, .. }));
 }

@@ -34,13 +34,24 @@ pub struct CagedObjectOptions {
     /// Spacing of the values of free joints that are tried around a given configuration, radians or metres; three to
     /// either side.
     pub free_step: f64,
-    /// Configurations kept for a grasp at a step.
+    /// Configurations kept of those near to a given one.
     pub branches: usize,
+    /// Farthest that the tool may be, half way between two states, from half way between their poses: more means that the arm goes a
+    /// way round. Metres.
+    pub drift: f64,
 }
 
 impl Default for CagedObjectOptions {
     fn default() -> Self {
-        Self { shift: 0.03, turn: 0.4, longest_motion: 0.04, free_samples: 8, free_step: 0.05, branches: 8 }
+        Self {
+            shift: 0.03,
+            turn: 0.4,
+            longest_motion: 0.04,
+            free_samples: 8,
+            free_step: 0.05,
+            branches: 3,
+            drift: 0.01,
+        }
     }
 }
 
@@ -201,9 +212,8 @@ impl<C: EdgeChecker> ArticulatedTask for CagedObject<'_, C> {
             }
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Over the whole range of a redundant arm all values count: neighbours at other steps are found among them.
-        let whole_range = near.is_none() && !self.arm.free_variables().is_empty();
-        let most = if whole_range { usize::MAX } else { self.options.branches };
+        // Over the whole range all count: neighbours at other steps are found among them.
+        let most = if near.is_none() { usize::MAX } else { self.options.branches };
         let mut free = Vec::new();
         for (_, q) in found {
             let state = CagedState { step, grasp, q };
@@ -218,6 +228,12 @@ impl<C: EdgeChecker> ArticulatedTask for CagedObject<'_, C> {
     }
 
     fn motion(&mut self, from: &CagedState, to: &CagedState) -> Result<(), Obstruction> {
+        let middle = self.arm.space().interpolate(&from.q, &to.q, 0.5);
+        let at = |state: &CagedState| self.world_from_tool(state.step, state.grasp).translation.vector;
+        let expected = 0.5 * (at(from) + at(to));
+        if (self.arm.world_from_tool(&middle).translation.vector - expected).norm() > self.options.drift {
+            return Err(Obstruction::Constraint);
+        }
         let (from, to) = (self.whole(from), self.whole(to));
         self.checker.edge(&from, &to).map_err(|blocked| blocked.by)
     }

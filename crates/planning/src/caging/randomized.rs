@@ -21,6 +21,8 @@ pub struct RandomizedOptions {
     /// Cost of one object step that is left, in units of the longest motion of the arm; what is above the truth makes the
     /// search greedy.
     pub heuristic: f64,
+    /// Chance that a draw which does not go on is drawn again.
+    pub ahead: f64,
     /// Two states of the same step and grasp nearer than this are the same, in units of the longest motion.
     pub same: f64,
     /// Draws after which the search gives up.
@@ -29,7 +31,7 @@ pub struct RandomizedOptions {
 
 impl Default for RandomizedOptions {
     fn default() -> Self {
-        Self { children: 3, heuristic: 2.0, same: 0.1, max_draws: 50_000 }
+        Self { children: 3, heuristic: 2.0, ahead: 0.7, same: 0.1, max_draws: 50_000 }
     }
 }
 
@@ -80,6 +82,8 @@ struct Node {
     cost: f64,
     /// Pairs of step and grasp not drawn yet.
     pool: Vec<(usize, usize)>,
+    /// Whether there was a draw.
+    drawn: bool,
 }
 
 /// A place in the queue; smaller totals come first, then older nodes.
@@ -176,10 +180,25 @@ impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
     }
 
     /// One draw without replacement; whether it gave a new state (SampleNN).
+    ///
+    /// The first one goes on with the same grasp, which is what works most often; later ones prefer to go on.
     fn draw_from(&mut self, node: usize, rng: &mut Rng) -> bool {
-        let pool = &mut self.nodes[node].pool;
-        let (step, grasp) = pool.swap_remove(rng.below(pool.len()));
         let from = self.nodes[node].state.clone();
+        let (task, ahead) = (&*self.task, self.task.remaining(from.step));
+        let goes_on = |&(step, _): &(usize, usize)| task.remaining(step) < ahead;
+        let Node { pool, drawn, .. } = &mut self.nodes[node];
+        let same = |entry: &(usize, usize)| goes_on(entry) && entry.1 == from.grasp;
+        let first = if *drawn { None } else { pool.iter().position(same) };
+        *drawn = true;
+        let number = first.unwrap_or_else(|| {
+            let number = rng.below(pool.len());
+            if goes_on(&pool[number]) || rng.unit() >= self.options.ahead {
+                number
+            } else {
+                rng.below(pool.len())
+            }
+        });
+        let (step, grasp) = pool.swap_remove(number);
         for q in self.solutions(step, grasp, Some(&from.q)) {
             let to = CagedState { step, grasp, q };
             if self.is_known(&to) {
@@ -225,7 +244,7 @@ impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
         let node = self.nodes.len();
         self.by_step[state.step].push(node);
         self.open.push(Entry { total: cost + self.heuristic(state.step), node });
-        self.nodes.push(Node { state, parent, cost, pool });
+        self.nodes.push(Node { state, parent, cost, pool, drawn: false });
     }
 
     fn heuristic(&self, step: usize) -> f64 {

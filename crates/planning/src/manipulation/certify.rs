@@ -159,14 +159,7 @@ fn rules(
         }
         _ => None,
     };
-    Rules {
-        margin: 0.0,
-        held,
-        gripper: links.to_vec(),
-        target: near.then_some(target),
-        give,
-        sink,
-    }
+    Rules { margin: 0.0, held, gripper: links.to_vec(), target: near.then_some(target), give, sink }
 }
 
 /// Looks at the motion in steps of the resolution, at every one.

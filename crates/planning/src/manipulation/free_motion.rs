@@ -62,12 +62,7 @@ impl<'c> FreeMotion<'c, '_> {
         outcome
     }
 
-    pub(super) fn smoothed(
-        &self,
-        path: Vec<Vec<f64>>,
-        budget: &Budget<'_>,
-        rng: &mut Rng,
-    ) -> Vec<Vec<f64>> {
+    pub(super) fn smoothed(&self, path: Vec<Vec<f64>>, budget: &Budget<'_>, rng: &mut Rng) -> Vec<Vec<f64>> {
         smooth(&mut self.checker(), path, &self.cx.options.smoothers, budget, rng)
     }
 

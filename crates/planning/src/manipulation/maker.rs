@@ -47,7 +47,14 @@ impl<'c, 'a> Maker<'c, 'a> {
     }
 
     /// A straight motion of the fingers.
-    pub(super) fn fingers(&mut self, kind: SegmentKind, from: &[f64], to: &[f64], scene: &Scene, held: Option<&Held>) {
+    pub(super) fn fingers(
+        &mut self,
+        kind: SegmentKind,
+        from: &[f64],
+        to: &[f64],
+        scene: &Scene,
+        held: Option<&Held>,
+    ) {
         let cx = self.cx;
         let dofs = &cx.gripper().dofs;
         let rules = cx.touching();

@@ -13,7 +13,7 @@ use super::maker::Maker;
 use super::picks::hand_check;
 use super::plan::{Choice, GoalFailure, OpenChoice, SegmentKind, Stage, Tried};
 use super::problem::{GoalContext, with_fingers_space};
-use super::rejections::{Filter, Rejections};
+use super::rejections::{Cause, Filter, Rejections};
 use super::sequence::{Observer, Reached};
 use super::stretch::{back_off, cause, fine_checker, fingers_move, state_is_free};
 use crate::budget::{Budget, Interrupt};
@@ -21,6 +21,8 @@ use crate::caging::{
     ArticulatedTask, Cage, CageGrasp, CageStart, CagedObject, CagedState, CagingFailure, CagingFailureReason,
     ObjectStep, RandomizedOptions, randomized_search,
 };
+use crate::cartesian::LineObstacle;
+use crate::edge::Obstruction;
 use crate::explore::{ExploreOptions, FixedMotion, make_way};
 use crate::goal::FixedGoals;
 use crate::grasp::Grasp;
@@ -40,7 +42,7 @@ pub(super) struct ArticleWay {
 const THERE: f64 = 1e-6;
 
 /// Shares of the draws of a search that each round gets.
-const ROUNDS: [f64; 3] = [0.01, 0.1, 1.0];
+const ROUNDS: [f64; 4] = [0.002, 0.01, 0.1, 1.0];
 
 /// Most starts that are searched from.
 const STARTS: usize = 24;
@@ -66,16 +68,14 @@ pub(super) fn plan_opening(
         return Err(missed);
     };
     let cages = cx.problem.cages.get(way.article).copied().unwrap_or_default();
-    let numbers: Vec<usize> =
-        (0..cages.len()).filter(|&c| cages[c].hold.moves(way.to > way.from)).collect();
+    let numbers: Vec<usize> = (0..cages.len()).filter(|&c| cages[c].hold.moves(way.to > way.from)).collect();
     let usable: Vec<&Cage> = numbers.iter().map(|&c| &cages[c]).collect();
     let grasps: Vec<CageGrasp> = usable.iter().map(|cage| cage.grasp.clone()).collect();
     let dofs: Vec<DofIdx> = [cx.problem.arm.dofs(), cx.gripper().dofs.as_slice()].concat();
     let joints = with_fingers_space(cx.problem.arm.space(), cx.finger_space);
     let first_obstacle = cx.problem.task.objects.len();
     let (rules, resolution) = (cx.touching(), cx.options.fine_resolution);
-    let checker =
-        ArticleChecker::new(scene, &joints, &dofs, (article, first_obstacle), q, rules, resolution);
+    let checker = ArticleChecker::new(scene, &joints, &dofs, (article, first_obstacle), q, rules, resolution);
     let (rest, steps) = (cx.arm_values(q), steps(&mechanism, &way, cx.options.caging.shift, &grasps));
     let task = CagedObject::new(cx.problem.arm, &grasps, steps, checker, &rest, cx.options.caging);
     let Ok(task) = task else {
@@ -86,7 +86,8 @@ pub(super) fn plan_opening(
     let task = task.with_fingers(usable.iter().map(|cage| cage.loose.clone()).collect());
     let mut order: Vec<usize> = (0..usable.len()).collect();
     seed.split("grips").rng().shuffle(&mut order);
-    order.sort_by_key(|&grip| usable[grip].hold);
+    // What holds both ways and in contact needs no change of grip; of what is left, what holds both ways.
+    order.sort_by_key(|&grip| (usable[grip].hold, !usable[grip].grasp.contact));
     order.reverse();
     let world_from_part = mechanism.world_from_part(way.from);
     let rejections = Rejections::default();
@@ -305,7 +306,7 @@ impl Opening<'_, '_, '_> {
         -(self.cx.problem.arm.world_from_tool(at).rotation * self.cx.gripper().approach_in_tool.into_inner())
     }
 
-    fn start(&self, state: &CagedState) -> Result<Start, (Filter, super::Cause)> {
+    fn start(&self, state: &CagedState) -> Result<Start, (Filter, Cause)> {
         let Self { cx, scene, q, .. } = *self;
         let cage = self.cages[state.grasp];
         let preshape = &cx.gripper().preshapes[cage.preshape].values;
@@ -315,8 +316,8 @@ impl Opening<'_, '_, '_> {
             .map_err(|cause| (Filter::ArmAtGrasp, cause))?;
         fingers_move(cx, scene, q, at, preshape, &cage.loose, cx.touching())
             .map_err(|cause| (Filter::ClosedHand, cause))?;
-        let mut approach = back_off(cx, scene, &open, at, &self.backwards(at))
-            .map_err(|cause| (Filter::Approach, cause))?;
+        let mut approach =
+            back_off(cx, scene, &open, at, &self.backwards(at)).map_err(|cause| (Filter::Approach, cause))?;
         approach.reverse();
         let far = &approach[0];
         let now = q.select(&cx.gripper().dofs);
@@ -385,8 +386,7 @@ impl Opening<'_, '_, '_> {
         let from = q.select(&dofs);
         let arm = cx.problem.arm.dofs().len();
         let fingers: Vec<usize> = (arm..dofs.len()).collect();
-        let motion =
-            FixedMotion::straight(&fingers, &from, &cx.gripper().preshapes[cage.preshape].values);
+        let motion = FixedMotion::straight(&fingers, &from, &cx.gripper().preshapes[cage.preshape].values);
         let options = ExploreOptions::default();
         match make_way(&mut checker, &from, &motion, &options, budget, seed.split("way")) {
             Ok(solution) => {
@@ -407,7 +407,12 @@ impl Opening<'_, '_, '_> {
     /// The failure of a search for a way.
     fn stuck(&mut self, failure: &CagingFailure) -> Box<GoalFailure> {
         for (&by, &count) in &failure.statistics.blocked {
-            *self.rejections.edges.entry(cause(self.scene, by)).or_insert(0) += count;
+            let why = match by {
+                // The arm would have to go a way round.
+                Obstruction::Constraint => Cause::Line(LineObstacle::BranchEnds),
+                by => cause(self.scene, by),
+            };
+            *self.rejections.edges.entry(why).or_insert(0) += count;
         }
         let mut missed = GoalFailure::new(self.cx.object_name(), Stage::Open);
         missed.message = failure.to_string();

@@ -1,6 +1,7 @@
 //! Parameters of a pick-and-place planner; lengths follow from the measures of arm and hand.
 
 use robotc_core::{Configuration, LinkIdx};
+use serde::{Deserialize, Serialize};
 
 use crate::arm::ArmModel;
 use crate::caging::{CagedObjectOptions, RandomizedOptions};
@@ -29,7 +30,10 @@ impl Measures {
 }
 
 /// Parameters of a pick-and-place planner. Lengths are metres.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// As a document it is JSON; see [`ManipulationOptions::with_document`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ManipulationOptions {
     /// The searches for free motions.
     pub rrt: RrtOptions,
@@ -107,6 +111,19 @@ impl ManipulationOptions {
         }
     }
 
+    /// These options with what a document says otherwise: a JSON object of some of the fields, in which nested objects may be partial
+    /// too. Unknown fields are errors.
+    pub fn with_document(&self, text: &str) -> Result<Self, serde_json::Error> {
+        let mut all = serde_json::to_value(self)?;
+        overlay(&mut all, serde_json::from_str(text)?);
+        serde_json::from_value(all)
+    }
+
+    /// All options as a document.
+    pub fn document(&self) -> String {
+        serde_json::to_string_pretty(self).expect("numbers and names can be written")
+    }
+
     /// Distance that straight motions and fingers keep from everything that they need not touch: it makes the states
     /// between those looked at free too.
     pub fn fine_margin(&self) -> f64 {
@@ -114,9 +131,36 @@ impl ManipulationOptions {
     }
 }
 
+/// Puts the values of `above` in place of those of `below`, object by object.
+fn overlay(below: &mut serde_json::Value, above: serde_json::Value) {
+    match (below, above) {
+        (serde_json::Value::Object(below), serde_json::Value::Object(above)) => {
+            for (key, value) in above {
+                match below.get_mut(&key) {
+                    Some(old) => overlay(old, value),
+                    None => drop(below.insert(key, value)),
+                }
+            }
+        }
+        (below, above) => *below = above,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn documents_change_what_they_name() {
+        let own = ManipulationOptions::new(&Measures { reach: 1.4, hand: 0.15 });
+        assert_eq!(own.with_document(&own.document()).unwrap(), own);
+        let changed = own.with_document(r#"{"margin": 0.01, "rrt": {"max_iterations": 7}}"#).unwrap();
+        assert_eq!((changed.margin, changed.rrt.max_iterations), (0.01, 7));
+        assert_eq!(ManipulationOptions { margin: own.margin, rrt: own.rrt, ..changed }, own);
+        for wrong in ["{", r#"{"margn": 1}"#, r#"{"line": {"stp": 1}}"#, r#"{"margin": "wide"}"#, "7"] {
+            assert!(own.with_document(wrong).is_err(), "{wrong}");
+        }
+    }
 
     #[test]
     fn lengths_scale_with_the_robot() {

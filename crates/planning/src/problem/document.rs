@@ -5,6 +5,7 @@ use robotc_core::{Pose, Seed};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::situation::SituationDocument;
 use crate::arm::ArmModel;
 use crate::budget::Interrupt;
 use crate::constraint::{Constraint, HeldMechanism, RegionError, RegionTolerance, TaskRegion, Upright};
@@ -26,13 +27,21 @@ pub struct PlanningProblem {
     /// Name of a planner in the registry.
     #[serde(default = "default_planner")]
     pub planner: String,
-    /// One for each coordinate: limits and metric.
+    /// One for each coordinate: limits and metric. Beside a task it may be left out, and is that of the arm.
+    #[serde(default)]
     pub axes: Vec<AxisDocument>,
-    /// The start configuration.
+    /// The start configuration. Beside a task it may be left out, and is where the task starts.
+    #[serde(default)]
     pub start: Vec<f64>,
     /// Goal configurations; more can be drawn during the search by a sampler, which is code.
     #[serde(default)]
     pub goals: Vec<Vec<f64>>,
+    /// `world_from_tool`: goals of which inverse kinematics finds the configurations. Needs an arm.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tool_goals: Vec<PoseDocument>,
+    /// What differs from the start of the task. Needs a task.
+    #[serde(default, skip_serializing_if = "SituationDocument::is_empty")]
+    pub situation: SituationDocument,
     /// A condition on every state of the path.
     #[serde(default)]
     pub constraint: Option<ConstraintDocument>,
@@ -231,6 +240,8 @@ impl PlanningProblem {
             axes: space.axes().iter().map(axis).collect(),
             start: start.to_vec(),
             goals,
+            tool_goals: Vec::new(),
+            situation: SituationDocument::default(),
             constraint: None,
             resolution: default_resolution(),
             margin: default_margin(),
@@ -246,9 +257,14 @@ impl PlanningProblem {
 
     /// Reads and checks a document.
     pub fn read(text: &str) -> Result<Self, ProblemError> {
-        let problem: Self = serde_json::from_str(text).map_err(|e| ProblemError::Syntax(e.to_string()))?;
+        let problem = Self::read_partial(text)?;
         problem.check()?;
         Ok(problem)
+    }
+
+    /// Reads a document that may lack axes and start; what is filled in is checked by [`check`](Self::check).
+    pub fn read_partial(text: &str) -> Result<Self, ProblemError> {
+        serde_json::from_str(text).map_err(|e| ProblemError::Syntax(e.to_string()))
     }
 
     /// The document as text, all keys written out.
@@ -264,6 +280,7 @@ impl PlanningProblem {
         let value = |what: String, found: f64, expected: &'static str, good: bool| {
             if good { Ok(()) } else { Err(ProblemError::Value { what, found, expected }) }
         };
+        value("the number of axes".into(), self.axes.len() as f64, "at least 1", !self.axes.is_empty())?;
         for (i, axis) in self.axes.iter().enumerate() {
             let [low, high] = axis.bounds.unwrap_or([0.0, 0.0]);
             let finite = low.is_finite() && high.is_finite();

@@ -7,6 +7,7 @@
 mod document;
 mod planners;
 mod registry;
+mod situation;
 mod solve;
 #[cfg(test)]
 mod tests;
@@ -17,4 +18,5 @@ pub use document::{
 pub use registry::{
     PathFailure, PathFailureReason, PathPlanner, PathSolution, Query, Registry, RegistryError,
 };
+pub use situation::{HeldDocument, SituationDocument};
 pub use solve::{SolveFailure, Solved, solve};

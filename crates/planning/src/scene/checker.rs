@@ -72,6 +72,13 @@ impl<'a> RobotChecker<'a> {
         self
     }
 
+    /// The same checker that lets links go through each other, and through what is held.
+    pub fn without_self_collisions(mut self) -> Self {
+        self.movers.pairs.clear();
+        self.movers.beside_held.clear();
+        self
+    }
+
     /// The robot and the bodies around it.
     pub fn scene(&self) -> &'a Scene {
         self.scene

@@ -186,6 +186,36 @@ impl Scene {
         self.names(obstruction).map(|[one, other]| format!("{one} touches {other}"))
     }
 
+    /// How deep a touching pair is in each other with the robot at `q`, metres; zero when they come too near without touching,
+    /// `None` when the obstruction is not a contact of this scene.
+    pub fn depth(&self, q: &Configuration, held: Option<&Grip>, obstruction: Obstruction) -> Option<f64> {
+        let Obstruction::Contact(code) = obstruction else { return None };
+        let mut poses = LinkPoses::default();
+        self.kinematics.link_poses(q, &mut poses);
+        let world_from_link = |link: LinkIdx| self.world_from_robot * poses.root_from(link);
+        let placed = |n: usize| match n.checked_sub(self.links.len()) {
+            None => Some((self.links.get(LinkIdx::new(n))?, world_from_link(LinkIdx::new(n)))),
+            Some(body) => {
+                let index = BodyIdx::new(body);
+                let body = self.bodies.get(index)?;
+                let grip = held.filter(|grip| grip.body == index);
+                let pose = grip.map_or(body.world_from_body, |g| world_from_link(g.link) * g.link_from_body);
+                Some((&*body.shape, pose))
+            }
+        };
+        let (one, world_from_one) = placed((code >> 16) as usize)?;
+        let (other, world_from_other) = placed((code & 0xffff) as usize)?;
+        let other_from_one = world_from_other.inv_mul(&world_from_one);
+        let mut deepest: f64 = 0.0;
+        for a in &one.parts {
+            for b in &other.parts {
+                let found = contact(&a.part, &other_from_one, &b.part, &Pose::identity(), 0.0);
+                deepest = deepest.max(found.map_or(0.0, |c| c.depth));
+            }
+        }
+        Some(deepest)
+    }
+
     /// Diagonal of the box around a body, metres.
     pub fn body_diagonal(&self, body: BodyIdx) -> f64 {
         self.bodies[body].shape.bounds.diagonal()

@@ -12,6 +12,8 @@ mod timed;
 pub use point_to_point::point_to_point;
 pub use timed::TimedPath;
 
+use serde::{Deserialize, Serialize};
+
 use crate::edge::EdgeChecker;
 use crate::space::Space;
 
@@ -27,7 +29,8 @@ pub struct MotionLimits {
 }
 
 /// How a path of straight edges is driven.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum TimeLaw {
     /// Without stopping: corners are rounded, and the speed is as high as velocity and acceleration limits allow.
     /// Acceleration may jump.
@@ -38,7 +41,8 @@ pub enum TimeLaw {
 }
 
 /// Parameters of the time parameterisation.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub struct TimingOptions {
     /// How the path is driven.
     pub law: TimeLaw,

@@ -1,4 +1,4 @@
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from typing import TypedDict
 
@@ -41,11 +41,23 @@ class Step(TypedDict):
     level: int
 
 class Segment(TypedDict):
-    """A motion of a plan; `kind` is preshape, reach, approach, grasp, lift, carry, lower, release or retreat."""
+    """A motion of a plan; `kind` is preshape, reach, approach, grasp, lift, carry, lower, release, retreat or open."""
 
     kind: str
     object: str
     duration: float
+
+class Contact(TypedDict):
+    """Where a path first meets something: on the way from state `edge` to the next. `link` and `body` are empty, and `depth` zero,
+    when a limit is exceeded or a constraint violated."""
+
+    edge: int
+    fraction: float
+    q: Array
+    link: str
+    body: str
+    depth: float
+    message: str
 
 class SpecificationError(ValueError):
     """A specification cannot be used; `diagnostics` holds everything that was found."""
@@ -152,7 +164,77 @@ class KnowledgeBase:
 class Session:
     """A task with its artefacts, ready to be planned."""
 
-    def plan(self, seed: int | None = None, time_limit: float = 30.0) -> Plan: ...
+    @property
+    def joint_names(self) -> list[str]:
+        """The joints that free motions are of."""
+    @property
+    def start(self) -> Array:
+        """Their values where the task starts."""
+    def tool(self, q: Array) -> Array:
+        """`world_from_tool`, shape (4, 4)."""
+    def plan(self, seed: int | None = None, time_limit: float = 30.0, options: str | None = None) -> Plan:
+        """Plans the whole task: picking, placing, doors. `options` is JSON with what differs from `options()`."""
+    def options(self) -> str:
+        """The options of `plan`, as JSON."""
+    def motion_problem(self) -> str:
+        """A problem of free motion with all defaults and no goal, as JSON."""
+    def plan_motion(
+        self,
+        goals: Array | None = None,
+        poses: Sequence[Array] = ...,
+        start: Array | None = None,
+        held: tuple[str, Array] | None = None,
+        bodies: Mapping[str, Array] = ...,
+        joints: Mapping[str, float] = ...,
+        problem: str | Mapping[str, object] | None = None,
+        seed: int | None = None,
+        time_limit: float | None = None,
+        progress: Callable[[float], object] | None = None,
+    ) -> Motion:
+        """A free motion of the arm to one of many goals.
+
+        `goals` are joint values, shape (goals, joints), `poses` are `world_from_tool`. `held` is an object with its pose in
+        the tool frame, `bodies` where others are, `joints` what those joints are at that are not planned for. `problem` is a document of
+        docs/guides/planners.md, with constraints, margin and limits. `progress` is told the seconds so far; the search ends when it
+        returns False or raises.
+        """
+    def validate(
+        self,
+        path: Array,
+        held: tuple[str, Array] | None = None,
+        bodies: Mapping[str, Array] = ...,
+        joints: Mapping[str, float] = ...,
+        problem: str | Mapping[str, object] | None = None,
+    ) -> Contact | None:
+        """Where a path, shape (states, joints), first meets something, exceeds a limit or leaves the constraint of `problem`."""
+
+class Motion:
+    """A free motion of an arm."""
+
+    @property
+    def joint_names(self) -> list[str]: ...
+    @property
+    def path(self) -> Array:
+        """States from start to goal, straight in between, shape (states, joints)."""
+    @property
+    def goal(self) -> int:
+        """Number of the goal that is reached: goals count first, then poses."""
+    @property
+    def length(self) -> float:
+        """In the metric of the arm."""
+    @property
+    def seconds(self) -> float:
+        """How long planning took."""
+    @property
+    def duration(self) -> float: ...
+    @property
+    def times(self) -> Array:
+        """Of the knots of the fastest motion along the path, seconds."""
+    @property
+    def positions(self) -> Array:
+        """At these times, shape (knots, joints)."""
+    @property
+    def velocities(self) -> Array: ...
 
 class Plan:
     """A certified plan with the motion of all joints."""

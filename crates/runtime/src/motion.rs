@@ -1,0 +1,272 @@
+//! Free motions of a task's arm: problems as documents, solved, timed, and judged by whoever wants to.
+
+use robotc_core::ids::Idx;
+use robotc_core::{BodyIdx, Configuration, Pose, Trajectory};
+use robotc_planning::edge::{Blocked, walk_edge};
+use robotc_planning::manipulation::gripper_links;
+use robotc_planning::pose_goals::PoseGoals;
+use robotc_planning::problem::{PathFailureReason, PoseDocument, ProblemError, SolveFailure, Solved, solve};
+use robotc_planning::scene::{Grip, RobotChecker, Rules, Scene};
+use robotc_planning::{
+    Budget, Constraint, EdgeChecker, Interrupt, Obstruction, PlanningProblem, Registry, time_path,
+};
+use thiserror::Error;
+
+use crate::session::Session;
+
+/// A solved problem.
+#[derive(Debug, Clone)]
+pub struct Motion {
+    /// The path, which goal it reaches, and what it took. Goals count in the order of the problem: configurations, then poses of the
+    /// tool.
+    pub solved: Solved,
+    /// The fastest motion along it within the limits of the arm.
+    pub trajectory: Trajectory,
+}
+
+/// Why a problem has no solution.
+#[derive(Debug, Clone, Error)]
+pub enum MotionError {
+    /// The document is wrong.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    /// It names something that the task does not have.
+    #[error("the task has no {what} {name}{hint}")]
+    Unknown {
+        /// What kind of thing.
+        what: &'static str,
+        /// Its name.
+        name: String,
+        /// The nearest known name, as a clause.
+        hint: String,
+    },
+    /// There is no path; the message says what was in the way.
+    #[error("{0}")]
+    NoPath(String),
+}
+
+/// Where a path meets something first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FirstContact {
+    /// Number of the motion: from state `edge` to the next.
+    pub edge: usize,
+    /// How far along it, 0 to 1.
+    pub fraction: f64,
+    /// The configuration there.
+    pub q: Vec<f64>,
+    /// What moves: a link or a held object. Empty when nothing touches.
+    pub link: String,
+    /// What it touches: a body, or another link. Empty when nothing touches.
+    pub body: String,
+    /// How deep, metres.
+    pub depth: f64,
+    /// The same in words, or what else is wrong: a limit, the constraint.
+    pub message: String,
+}
+
+/// The robot and the things around it as a problem says.
+struct Situation {
+    scene: Scene,
+    q: Configuration,
+    held: Option<Grip>,
+}
+
+impl Session {
+    /// The problem of moving the arm from where the task starts, with defaults for everything else.
+    pub fn motion_problem(&self) -> PlanningProblem {
+        let start = self.task().start.select(self.arm().dofs());
+        let mut problem = PlanningProblem::new(self.arm().space(), &start, vec![]);
+        let options = self.options();
+        problem.resolution = options.resolution;
+        problem.margin = options.margin;
+        problem
+    }
+
+    /// Reads a document; axes and start that it leaves out are those of the arm and of the task.
+    pub fn read_problem(&self, text: &str) -> Result<PlanningProblem, ProblemError> {
+        let mut problem = PlanningProblem::read_partial(text)?;
+        let own = self.motion_problem();
+        if problem.axes.is_empty() {
+            problem.axes = own.axes;
+        }
+        if problem.start.is_empty() {
+            problem.start = own.start;
+        }
+        problem.check()?;
+        Ok(problem)
+    }
+
+    /// Solves a problem with the planner that it names. The result depends on the problem alone unless the budget ends the search.
+    pub fn solve_motion(
+        &self,
+        problem: &PlanningProblem,
+        registry: &Registry,
+        budget: &Budget<'_>,
+    ) -> Result<Motion, MotionError> {
+        let situation = self.situation(problem)?;
+        let constraint = self.constraint(problem)?;
+        let constraint = constraint.as_deref();
+        let poses: Vec<Pose> = problem
+            .tool_goals
+            .iter()
+            .map(|p| p.pose().ok_or(ProblemError::Pose("tool_goals")))
+            .collect::<Result<_, _>>()?;
+        let mut checker = self.checker(&situation, problem, problem.margin, problem.resolution, constraint);
+        let for_goals = self.checker(&situation, problem, problem.margin, problem.resolution, constraint);
+        let rng = problem.random_seed().split("goals").rng();
+        let (arm, rounds) = (self.arm(), self.options().free_samples as usize);
+        let mut goals = PoseGoals::new(arm, for_goals, &problem.goals, &poses, &problem.start, rounds, rng);
+        let sampler = (!poses.is_empty()).then_some(&mut goals as &mut dyn robotc_planning::GoalSampler);
+        let solved = solve(registry, problem, &mut checker, sampler, constraint, budget);
+        let mut solved = solved.map_err(|failure| self.explain(&situation, &failure))?;
+        if !poses.is_empty() {
+            solved.goal = goals.numbers()[solved.goal];
+        }
+        let timed = time_path(&mut checker, &solved.path, arm.limits(), &self.options().timing);
+        let trajectory = timed
+            .into_trajectory(arm.dofs().to_vec(), arm.names().to_vec())
+            .expect("times of a timed path grow");
+        Ok(Motion { solved, trajectory })
+    }
+
+    /// Where a path first meets something, exceeds a limit or leaves the constraint, looked at in steps of the certificate and
+    /// without a margin; `None` when it does not.
+    pub fn validate_path(
+        &self,
+        problem: &PlanningProblem,
+        path: &[Vec<f64>],
+    ) -> Result<Option<FirstContact>, MotionError> {
+        let width = self.arm().dofs().len();
+        if let Some((number, wrong)) = path.iter().enumerate().find(|(_, q)| q.len() != width) {
+            let (what, found) = (format!("path[{number}]"), wrong.len());
+            return Err(ProblemError::Dimension { what, found, expected: width }.into());
+        }
+        let situation = self.situation(problem)?;
+        let constraint = self.constraint(problem)?;
+        let step = self.options().certified_step;
+        let mut checker =
+            self.checker(&situation, problem, 0.0, step, constraint.as_deref()).without_clearance();
+        let Some(first) = path.first() else { return Ok(None) };
+        if let Err(by) = checker.state(first) {
+            return Ok(Some(self.first_contact(&situation, 0, 0.0, first.clone(), by)));
+        }
+        for (edge, pair) in path.windows(2).enumerate() {
+            if let Err(Blocked { fraction, by }) = walk_edge(&mut checker, &pair[0], &pair[1]) {
+                let q = self.arm().space().interpolate(&pair[0], &pair[1], fraction);
+                return Ok(Some(self.first_contact(&situation, edge, fraction, q, by)));
+            }
+        }
+        Ok(None)
+    }
+
+    fn first_contact(
+        &self,
+        situation: &Situation,
+        edge: usize,
+        fraction: f64,
+        q: Vec<f64>,
+        by: Obstruction,
+    ) -> FirstContact {
+        let mut all = situation.q.clone();
+        all.set(self.arm().dofs(), &q);
+        let depth = situation.scene.depth(&all, situation.held.as_ref(), by).unwrap_or(0.0);
+        let [link, body] = situation.scene.names(by).unwrap_or_default().map(str::to_owned);
+        FirstContact { edge, fraction, q, link, body, depth, message: words(&situation.scene, by) }
+    }
+
+    fn checker<'s>(
+        &'s self,
+        situation: &'s Situation,
+        problem: &PlanningProblem,
+        margin: f64,
+        resolution: f64,
+        constraint: Option<&'s dyn Constraint>,
+    ) -> RobotChecker<'s> {
+        let robot = &self.task().robot;
+        let gripper = robot.arms[self.task().arm].gripper.map_or_else(Vec::new, |g| gripper_links(robot, g));
+        let rules = Rules { margin, held: situation.held.clone(), gripper, ..Rules::default() };
+        let (arm, scene) = (self.arm(), &situation.scene);
+        let checker = RobotChecker::new(scene, arm.space(), arm.dofs(), &situation.q, rules, resolution)
+            .with_constraint(constraint);
+        if problem.self_collisions { checker } else { checker.without_self_collisions() }
+    }
+
+    fn constraint(&self, problem: &PlanningProblem) -> Result<Option<Box<dyn Constraint + '_>>, MotionError> {
+        let build = |document: &robotc_planning::problem::ConstraintDocument| document.build(self.arm());
+        Ok(problem.constraint.as_ref().map(build).transpose()?)
+    }
+
+    fn situation(&self, problem: &PlanningProblem) -> Result<Situation, MotionError> {
+        let task = self.task();
+        let (mut scene, mut q) = (self.scene().clone(), task.start.clone());
+        let names = task.objects.iter().map(|o| &o.name).chain(task.obstacles.iter().map(|o| &o.name));
+        let names: Vec<&str> = names.map(String::as_str).collect();
+        let body = |name: &str| named("body", name, &names).map(BodyIdx::new);
+        let pose = |document: &PoseDocument| document.pose().ok_or(ProblemError::Pose("situation"));
+        let document = &problem.situation;
+        let model = &task.robot.model;
+        let joints: Vec<&str> = model.dofs().iter().map(|dof| dof.name.as_str()).collect();
+        for (name, &value) in &document.joints {
+            q[robotc_core::DofIdx::new(named("joint", name, &joints)?)] = value;
+        }
+        let articles: Vec<&str> = task.articles.iter().map(|article| article.name.as_str()).collect();
+        for (name, &value) in &document.articles {
+            for (obstacle, place) in task.articles[named("article", name, &articles)?].moved_bodies(value) {
+                scene.place(BodyIdx::new(task.objects.len() + obstacle), place);
+            }
+        }
+        for (name, place) in &document.bodies {
+            scene.place(body(name)?, pose(place)?);
+        }
+        let held = match (&document.held, task.robot.arms[task.arm].gripper) {
+            (Some(held), Some(gripper)) => {
+                let gripper = &task.robot.grippers[gripper];
+                let link_from_body = gripper.palm_from_tool * pose(&held.tool_from_object)?;
+                Some(Grip { body: body(&held.object)?, link: gripper.palm, link_from_body })
+            }
+            _ => None,
+        };
+        Ok(Situation { scene, q, held })
+    }
+
+    /// A failure in words, with what was in the way most often.
+    fn explain(&self, situation: &Situation, failure: &SolveFailure) -> MotionError {
+        let SolveFailure::Search { failure: search, bad_goals } = failure else {
+            return MotionError::NoPath(failure.to_string());
+        };
+        let mut text = search.to_string();
+        if let PathFailureReason::Start(by) = &search.reason {
+            text += &format!(": {}", words(&situation.scene, *by));
+        }
+        for (number, by) in bad_goals {
+            text += &format!("; goal {number}: {}", words(&situation.scene, *by));
+        }
+        let mut blocked: Vec<_> = search.blocked.iter().collect();
+        blocked.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+        for (by, count) in blocked.into_iter().take(3) {
+            text += &format!("; {count} motions: {}", words(&situation.scene, *by));
+        }
+        MotionError::NoPath(text)
+    }
+}
+
+fn words(scene: &Scene, by: Obstruction) -> String {
+    match by {
+        Obstruction::Bounds => "a joint limit is exceeded".into(),
+        Obstruction::Constraint => "the path constraint is violated".into(),
+        Obstruction::Contact(_) => scene.describe(by).unwrap_or_default(),
+    }
+}
+
+fn named(what: &'static str, name: &str, known: &[&str]) -> Result<usize, MotionError> {
+    known.iter().position(|other| *other == name).ok_or_else(|| {
+        let near = robotc_core::diag::nearest(name, known.iter().copied());
+        let hint = near.map_or(String::new(), |near| format!("; did you mean {near}?"));
+        MotionError::Unknown { what, name: name.to_owned(), hint }
+    })
+}
+
+/// Whether a search was told to stop, and why.
+pub fn interrupted(problem: &PlanningProblem, elapsed: f64, cancelled: bool) -> Option<Interrupt> {
+    if cancelled { Some(Interrupt::Cancelled) } else { problem.interrupt(elapsed) }
+}
