@@ -96,6 +96,12 @@ impl ArmModel {
         })
     }
 
+    /// The same arm of a robot that stood at `world_from_robot` and stands at `world_from_new` now.
+    pub fn standing_at(&self, world_from_robot: &Pose, world_from_new: &Pose) -> Self {
+        let robot_from_base = world_from_robot.inv_mul(&self.world_from_base);
+        Self { world_from_base: world_from_new * robot_from_base, ..self.clone() }
+    }
+
     /// The degrees of freedom, base to tip.
     pub fn dofs(&self) -> &[DofIdx] {
         &self.dofs

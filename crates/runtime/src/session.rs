@@ -197,6 +197,13 @@ impl Session {
         certify(&self.problem(&grasps, &cages), options, plan)
     }
 
+    /// What the planners of the library are given.
+    pub fn with_problem<R>(&self, work: impl FnOnce(&Manipulation<'_>) -> R) -> R {
+        let grasps: Vec<&GraspSet> = self.grasps.iter().collect();
+        let cages: Vec<&[Cage]> = self.cages().collect();
+        work(&self.problem(&grasps, &cages))
+    }
+
     fn problem<'a>(&'a self, grasps: &'a [&'a GraspSet], cages: &'a [&'a [Cage]]) -> Manipulation<'a> {
         Manipulation {
             task: &self.task,

@@ -12,6 +12,7 @@ use robotc_core::{Sources, srdf};
 use robotc_kb::os::OsSystem;
 use robotc_planning::bench::{self, BenchOptions, BenchRobot, ProblemSet, Report, Summary};
 
+use super::bench_tasks;
 use super::compile::write_whole;
 use crate::output::{Failure, Outcome, print, say};
 use crate::progress::Progress;
@@ -25,8 +26,11 @@ pub(crate) struct Bench {
 
 #[derive(Subcommand)]
 enum What {
+    Bispace(bench_tasks::BiSpace),
+    Caging(bench_tasks::Caging),
     Checks(Checks),
     Motion(Motion),
+    Weights(bench_tasks::Weights),
 }
 
 /// Files that problems are about.
@@ -76,6 +80,9 @@ struct Motion {
 
 pub(crate) fn run(args: &Bench) -> Outcome {
     match &args.what {
+        What::Bispace(args) => bench_tasks::bispace(args),
+        What::Caging(args) => bench_tasks::caging(args),
+        What::Weights(args) => bench_tasks::weights(args),
         What::Checks(args) => checks(args),
         What::Motion(args) => motion(args),
     }

@@ -1,6 +1,7 @@
 //! One file per command; one line each in [`Command`] and [`run`].
 
 mod bench;
+mod bench_tasks;
 mod build;
 mod check;
 mod compile;

@@ -9,7 +9,7 @@ use super::options::ManipulationOptions;
 use super::plan::{ArticleMotion, Choice, Event, Held, OpenChoice, Plan, Segment, SegmentKind};
 use super::problem::{Manipulation, allowed_sink, gripper_links, motion_limits};
 use crate::caging::Cage;
-use crate::edge::EdgeChecker;
+use crate::edge::{EdgeChecker, Obstruction};
 use crate::mechanism::Mechanism;
 use crate::scene::{ArticleChecker, Grip, RobotChecker, Rules, Scene};
 use crate::space::{Axis, Space};
@@ -39,7 +39,8 @@ const LIMIT_USE: f64 = 1.0 + 1e-6;
 const PLACED: f64 = 1e-5;
 
 /// Replays a plan from the start of the problem: segments join, limits hold, nothing collides (no point travels more
-/// than [`ManipulationOptions::certified_step`] between two looks), held objects stay as upright as asked and end up where the plan says.
+/// than [`ManipulationOptions::certified_step`] between two states that are looked at, or proven by the clearance of the one looked at
+/// before), held objects stay as upright as asked and end up where the plan says.
 ///
 /// Returns the number of states looked at.
 pub fn certify(
@@ -177,8 +178,8 @@ fn replay(
         Goal::Place { keep_upright, .. } => keep_upright,
         Goal::Open { .. } => None,
     };
-    let mut checker =
-        RobotChecker::new(scene, &space, trajectory.dofs(), q, rules, resolution).without_clearance();
+    let mut checker = RobotChecker::new(scene, &space, trajectory.dofs(), q, rules, resolution);
+    let mut room = Room::default();
     let sample = |time: f64| trajectory.sample(time).positions;
     for (time, at) in dense_states(&checker, trajectory.times(), &sample, resolution) {
         if let (Some(tilt), Some(held), SegmentKind::Carry) = (keep_upright, &segment.held, segment.kind) {
@@ -191,9 +192,34 @@ fn replay(
                 return Err((time, "the held object tilts too far".into()));
             }
         }
-        checker.state(&at).map_err(|by| (time, checker.describe(by)))?;
+        room.look(&mut checker, at).map_err(|by| (time, checker.describe(by)))?;
     }
     Ok(checker.states())
+}
+
+/// How far everything may still move from the state that was looked at last.
+#[derive(Default)]
+struct Room {
+    left: f64,
+    at: Option<Vec<f64>>,
+}
+
+impl Room {
+    /// Looks at the next state of a motion, unless its clearance where it was looked at last proves it free.
+    fn look<C: EdgeChecker>(&mut self, checker: &mut C, next: Vec<f64>) -> Result<(), Obstruction> {
+        if !checker.space().contains(&next) {
+            return Err(Obstruction::Bounds);
+        }
+        self.left -= match &self.at {
+            None => f64::INFINITY,
+            Some(at) => checker.travel(&at.iter().zip(&next).map(|(a, b)| b - a).collect::<Vec<_>>()),
+        };
+        if self.left <= 0.0 {
+            self.left = checker.state(&next)?;
+        }
+        self.at = Some(next);
+        Ok(())
+    }
 }
 
 /// Where a segment begins.
@@ -234,14 +260,13 @@ fn replay_article(
     let first_obstacle = problem.task.objects.len();
     let (scene, dofs, step) = (begins.scene, trajectory.dofs(), options.certified_step);
     let of_article = (article, first_obstacle);
-    let mut checker =
-        ArticleChecker::new(scene, &joints, dofs, of_article, begins.q, rules, step).without_clearance();
+    let mut checker = ArticleChecker::new(scene, &joints, dofs, of_article, begins.q, rules, step);
+    let mut room = Room::default();
     let opens = values.end()[0] > values.start()[0];
     let cages: Vec<&Cage> =
         problem.cages[motion.article].iter().filter(|cage| cage.hold.moves(opens)).collect();
     let sample = |time: f64| [trajectory.sample(time).positions, values.sample(time).positions].concat();
     for (time, at) in dense_states(&checker, trajectory.times(), &sample, step) {
-        checker.state(&at).map_err(|by| (time, checker.describe(by)))?;
         let mut q = begins.q.clone();
         q.set(dofs, &at[..dofs.len()]);
         let part = mechanism.world_from_part(at[dofs.len()]);
@@ -255,6 +280,7 @@ fn replay_article(
         if !cages.iter().any(|cage| near(&cage)) {
             return Err((time, "the gripper leaves the cage".into()));
         }
+        room.look(&mut checker, at).map_err(|by| (time, checker.describe(by)))?;
     }
     Ok(checker.states())
 }

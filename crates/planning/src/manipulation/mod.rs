@@ -22,11 +22,13 @@ mod tests;
 
 pub use certify::{Uncertified, certify};
 pub use destinations::destination_poses;
+pub(crate) use opening::article_steps;
 pub use options::{ManipulationOptions, Measures};
 pub use plan::{
     ArticleMotion, Choice, Event, GoalFailure, Held, Nearest, OpenChoice, PlaceChoice, Plan, Segment,
     SegmentKind, SkippedGoal, Stage, Tried,
 };
 pub use problem::{Manipulation, gripper_links};
+pub(crate) use problem::{finger_space, with_fingers_space};
 pub use rejections::{Cause, Filter, Rejections};
 pub use sequence::{Observer, PlanFailure, pick_and_place};

@@ -76,7 +76,8 @@ pub(super) fn plan_opening(
     let first_obstacle = cx.problem.task.objects.len();
     let (rules, resolution) = (cx.touching(), cx.options.fine_resolution);
     let checker = ArticleChecker::new(scene, &joints, &dofs, (article, first_obstacle), q, rules, resolution);
-    let (rest, steps) = (cx.arm_values(q), steps(&mechanism, &way, cx.options.caging.shift, &grasps));
+    let (rest, steps) =
+        (cx.arm_values(q), article_steps(&mechanism, way.from, way.to, cx.options.caging.shift, &grasps));
     let task = CagedObject::new(cx.problem.arm, &grasps, steps, checker, &rest, cx.options.caging);
     let Ok(task) = task else {
         let mut missed = GoalFailure::new(cx.object_name(), Stage::Grasps);
@@ -142,16 +143,22 @@ impl ArticleWay {
 }
 
 /// Steps of the article that move its grips by no more than `shift`, metres.
-fn steps(mechanism: &Mechanism, way: &ArticleWay, shift: f64, grasps: &[CageGrasp]) -> Vec<ObjectStep> {
+pub(crate) fn article_steps(
+    mechanism: &Mechanism,
+    from: f64,
+    to: f64,
+    shift: f64,
+    grasps: &[CageGrasp],
+) -> Vec<ObjectStep> {
     let lever = match mechanism.motion {
         MechanismMotion::Slide => 1.0,
         MechanismMotion::Hinge => {
             grasps.iter().map(|g| g.part_from_tool.translation.vector.xy().norm()).fold(0.0, f64::max)
         }
     };
-    let count = (lever * (way.to - way.from).abs() / shift).ceil().max(1.0) as usize;
+    let count = (lever * (to - from).abs() / shift).ceil().max(1.0) as usize;
     let step = |value| ObjectStep { value, world_from_part: mechanism.world_from_part(value) };
-    Mechanism::steps(way.from, way.to, count + 1).into_iter().map(step).collect()
+    Mechanism::steps(from, to, count + 1).into_iter().map(step).collect()
 }
 
 /// Motions before and after that of the article.

@@ -158,7 +158,7 @@ pub(super) fn allowed_sink(problem: &Manipulation<'_>, options: &ManipulationOpt
 }
 
 /// The configuration space of a gripper's fingers.
-pub(super) fn finger_space(robot: &Robot, gripper: usize) -> Space {
+pub(crate) fn finger_space(robot: &Robot, gripper: usize) -> Space {
     let axis = |&dof: &DofIdx| {
         let d = &robot.model.dofs()[dof];
         Axis { lower: d.lower, upper: d.upper, wraps: d.continuous, weight: 1.0 }
@@ -167,7 +167,7 @@ pub(super) fn finger_space(robot: &Robot, gripper: usize) -> Space {
 }
 
 /// The space of an arm and then the fingers.
-pub(super) fn with_fingers_space(arm: &Space, fingers: &Space) -> Space {
+pub(crate) fn with_fingers_space(arm: &Space, fingers: &Space) -> Space {
     Space::new(arm.axes().iter().chain(fingers.axes()).copied().collect())
 }
 

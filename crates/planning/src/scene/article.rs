@@ -107,6 +107,17 @@ impl<'a> ArticleChecker<'a> {
         &self.scene
     }
 
+    /// Whether the article, where it is in a state, keeps off the links of the robot that stand still.
+    pub fn stands_clear(&mut self, q: &[f64]) -> bool {
+        let Some((&value, joints)) = q.split_last() else { return false };
+        self.q.set(self.dofs, joints);
+        self.scene.kinematics.link_poses(&self.q, &mut self.poses);
+        let moving = self.part.moving.iter().map(|&(_, body)| body);
+        let all: Vec<BodyIdx> = moving.chain(self.part.still.iter().copied()).collect();
+        self.part.place(&mut self.scene, value, self.rules.margin, 0.0).is_ok()
+            && self.scene.links_beside(&self.standing, &self.poses, all.into_iter(), 0.0).is_ok()
+    }
+
     /// Number of states looked at so far.
     pub fn states(&self) -> u64 {
         self.states

@@ -1,0 +1,100 @@
+"""Free motions: goals, things held, constraints, validation, progress."""
+
+import json
+
+import numpy as np
+import pytest
+
+import robotc
+
+
+@pytest.fixture(scope="module")
+def session(compiled):
+    return compiled[0].session()
+
+
+def turned(session, by=0.4):
+    q = session.start.copy()
+    q[0] += by
+    return q
+
+
+def test_goals(session):
+    near, far = turned(session), turned(session, 9.0)
+    motion = session.plan_motion(goals=np.array([far, near]), seed=3)
+    assert motion.goal == 1 and motion.joint_names == session.joint_names
+    assert motion.path.shape[1] == len(session.joint_names)
+    np.testing.assert_array_equal(motion.path[0], session.start)
+    np.testing.assert_array_equal(motion.path[-1], near)
+    assert motion.length > 0 and motion.seconds > 0
+    assert motion.times[-1] == pytest.approx(motion.duration)
+    assert motion.positions.shape == motion.velocities.shape == (len(motion.times), motion.path.shape[1])
+    again = session.plan_motion(goals=np.array([far, near]), seed=3)
+    np.testing.assert_array_equal(motion.path, again.path)
+    assert session.validate(motion.path) is None
+
+
+def test_poses(session):
+    pose = session.tool(session.start)
+    pose[2, 3] += 0.04
+    away = pose.copy()
+    away[0, 3] += 9.0
+    motion = session.plan_motion(poses=[away, pose])
+    assert motion.goal == 1
+    np.testing.assert_allclose(session.tool(motion.path[-1]), pose, atol=1e-6)
+
+
+def test_documents(session):
+    problem = json.loads(session.motion_problem())
+    problem["goals"] = [list(turned(session))]
+    upright = {"kind": "upright", "tool_from_object": {"position": [0, 0, 0], "orientation": [1, 0, 0, 0]}, "tilt": 0.5}
+    motion = session.plan_motion(problem={**problem, "constraint": upright})
+    for q in motion.path:
+        assert session.tool(q)[2, 2] < -np.cos(0.5) + 1e-6
+    text = session.plan_motion(problem=json.dumps(problem))
+    np.testing.assert_array_equal(text.path[-1], turned(session))
+    with pytest.raises(ValueError, match="unknown field"):
+        session.plan_motion(problem={**problem, "goal": []})
+
+
+def test_contacts(session):
+    down = session.start.copy()
+    down[1] += 0.9
+    contact = session.validate(np.array([session.start, down]))
+    assert contact is not None and contact["edge"] == 0 and 0 < contact["fraction"] <= 1
+    assert contact["body"] == "table" and contact["link"] and contact["depth"] >= 0
+    assert contact["link"] in contact["message"]
+    # What is held collides as well.
+    tool_from_block = np.eye(4)
+    tool_from_block[2, 3] = 0.3
+    held = session.validate(np.array([session.start, down]), held=("block", tool_from_block))
+    assert held["fraction"] < contact["fraction"] and held["link"] == "block"
+    with pytest.raises(robotc.PlanError, match="touches table"):
+        session.plan_motion(goals=np.array([down]))
+    with pytest.raises(ValueError, match="no body blok; did you mean block"):
+        session.plan_motion(goals=np.array([down]), bodies={"blok": np.eye(4)})
+
+
+def test_progress_and_cancellation(session):
+    goal, told = np.array([turned(session)]), []
+    session.plan_motion(goals=goal, progress=told.append)
+    assert told and told[0] >= 0
+    with pytest.raises(robotc.PlanError, match="cancelled"):
+        session.plan_motion(goals=goal, progress=lambda _: False)
+
+    def fails(_):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        session.plan_motion(goals=goal, progress=fails)
+    with pytest.raises(robotc.PlanError, match="time limit"):
+        session.plan_motion(goals=goal, time_limit=0.0)
+
+
+def test_options(session, plan):
+    options = json.loads(session.options())
+    assert options["margin"] > 0
+    same = session.plan(seed=3, options=json.dumps({"margin": options["margin"]}))
+    np.testing.assert_array_equal(same.positions, plan.positions)
+    with pytest.raises(ValueError, match="margn"):
+        session.plan(options='{"margn": 1}')
