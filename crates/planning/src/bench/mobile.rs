@@ -195,14 +195,14 @@ fn figures(search: &'static str, runs: &[(bool, f64, u64)]) -> MobileFigures {
 }
 
 /// The arm as it stands when the base is at the origin and looks along x, at its height.
-fn at_origin(problem: &Manipulation<'_>) -> ArmModel {
+pub(super) fn at_origin(problem: &Manipulation<'_>) -> ArmModel {
     let world_from_robot = &problem.task.world_from_robot;
     let height = Pose::translation(0.0, 0.0, world_from_robot.translation.z);
     problem.arm.standing_at(world_from_robot, &height)
 }
 
 /// x, y and heading of the base; and the floor as smallest x and y, largest x and y.
-fn start_and_floor(problem: &Manipulation<'_>, options: &MobileBenchOptions) -> [Vec<f64>; 2] {
+pub(super) fn start_and_floor(problem: &Manipulation<'_>, options: &MobileBenchOptions) -> [Vec<f64>; 2] {
     let robot = &problem.task.world_from_robot;
     let ahead = robot.rotation * Vector3::x();
     let at = robot.translation.vector;
@@ -213,9 +213,9 @@ fn start_and_floor(problem: &Manipulation<'_>, options: &MobileBenchOptions) -> 
 }
 
 /// The gripper alone, open.
-struct Hand<'a> {
+pub(super) struct Hand<'a> {
     scene: &'a Scene,
-    links: Vec<LinkIdx>,
+    pub(super) links: Vec<LinkIdx>,
     poses: LinkPoses,
     palm: LinkIdx,
     palm_from_tool: Pose,
@@ -226,7 +226,7 @@ struct Hand<'a> {
 const LOOK: f64 = 0.02;
 
 impl<'a> Hand<'a> {
-    fn new(problem: &Manipulation<'a>, gripper: usize, object: usize, margin: f64) -> Self {
+    pub(super) fn new(problem: &Manipulation<'a>, gripper: usize, object: usize, margin: f64) -> Self {
         let robot = &problem.task.robot;
         let links = gripper_links(robot, gripper);
         let mut q = problem.task.start.clone();
@@ -260,7 +260,7 @@ impl<'a> Hand<'a> {
     }
 
     /// Poses backed off from grasps, where the gripper is free.
-    fn goals(&self, problem: &Manipulation<'_>, options: &MobileBenchOptions, back: f64) -> Vec<Pose> {
+    pub(super) fn goals(&self, problem: &Manipulation<'_>, options: &MobileBenchOptions, back: f64) -> Vec<Pose> {
         let world_from_object = self.scene.world_from_body(BodyIdx::new(options.object));
         let grasps = problem.grasps[options.object].grasps.iter();
         let poses = grasps.map(|grasp| world_from_object * grasp.object_from_backed_off(back));

@@ -9,6 +9,7 @@
 mod caging;
 mod checks;
 mod mobile;
+mod placement;
 mod problems;
 mod report;
 mod robot;
@@ -18,6 +19,7 @@ mod weights;
 pub use caging::{Attempt, CagingBenchOptions, CagingPlace, CagingReport, measure_caging};
 pub use checks::{CheckRates, measure_checks};
 pub use mobile::{MobileBenchOptions, MobileFigures, MobileReport, measure_mobile};
+pub use placement::{PlacementFigures, PlacementReport, measure_placement};
 pub use problems::{Problem, ProblemSet, ProblemSetError};
 pub use report::{Report, Row, SceneSummary, Summary};
 pub use robot::{BenchError, BenchRobot, Stage};

@@ -1,0 +1,163 @@
+//! Where to stand: the first place for a base from which a grasp is free, found by inverse reachability and at random (thesis section
+//! 4.4, algorithm 3.11).
+
+use nalgebra::{Translation3, UnitQuaternion, Vector3};
+use robotc_core::ik::IkSolutions;
+use robotc_core::{LinkIdx, Pose, Seed};
+use serde::Serialize;
+
+use super::mobile::{Hand, MobileBenchOptions, at_origin, start_and_floor};
+use crate::arm::ArmModel;
+use crate::budget::Budget;
+use crate::edge::{EdgeChecker, Obstruction};
+use crate::goal::{GoalDraw, GoalSampler};
+use crate::manipulation::{Manipulation, ManipulationOptions};
+use crate::placement::{
+    BaseDistribution, BasePlacement, InverseSamples, InverseSamplesOptions, PlacementArm, PlacementOptions,
+    PlacementProblem, UniformBases,
+};
+use crate::scene::{MobileChecker, Rules};
+
+/// The figures of one way to draw places.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlacementFigures {
+    /// `inverse` or `uniform`.
+    pub bases: &'static str,
+    /// Runs that found a place.
+    pub solved: u64,
+    /// Median milliseconds to the first place, its configuration free.
+    pub median_ms: f64,
+    /// Mean milliseconds.
+    pub mean_ms: f64,
+    /// Places tried, mean.
+    pub places: f64,
+}
+
+/// The figures of a scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlacementReport {
+    /// Name of the task.
+    pub scene: String,
+    /// Grasps that may be reached.
+    pub grasps: usize,
+    /// Milliseconds to draw the samples of the arm, once for a robot.
+    pub prepare_ms: f64,
+    /// Inverse reachability, and anywhere within reach.
+    pub bases: Vec<PlacementFigures>,
+    /// Mean milliseconds at random by those with inverse reachability.
+    pub times_faster: f64,
+}
+
+/// Looks for the first place with both distributions in turn.
+pub fn measure_placement(
+    problem: &Manipulation<'_>,
+    planner: &ManipulationOptions,
+    options: &MobileBenchOptions,
+    now: &dyn Fn() -> f64,
+) -> Option<PlacementReport> {
+    let task = problem.task;
+    let gripper = task.robot.arms[task.arm].gripper?;
+    let hand = Hand::new(problem, gripper, options.object, planner.fine_margin());
+    let grasps = hand.goals(problem, options, planner.approach);
+    if grasps.is_empty() {
+        return None;
+    }
+    let arm = at_origin(problem);
+    let began = now();
+    let samples = InverseSamples::of_arms(&[&arm], &InverseSamplesOptions::default(), &mut Seed::new(1).rng());
+    let prepare_ms = 1e3 * (now() - began);
+    let [_, floor] = start_and_floor(problem, options);
+    let floor = ([floor[0], floor[1]], [floor[2], floor[3]]);
+    let rules = Rules { margin: planner.margin, gripper: hand.links.clone(), ..Rules::default() };
+    let moved: Vec<LinkIdx> = {
+        let model = &task.robot.model;
+        let moves = |link: &LinkIdx| model.dofs_moving(*link).iter().any(|dof| arm.dofs().contains(dof));
+        model.links().indices().filter(moves).collect()
+    };
+    let arms = [PlacementArm { cost: 1.0, grasps: grasps.clone() }];
+    let mut runs: [Vec<(bool, f64, u32)>; 2] = Default::default();
+    for seed in 0..options.seeds {
+        for (number, runs) in runs.iter_mut().enumerate() {
+            let mut inverse = samples.clone();
+            let mut uniform = UniformBases { radius: arm.reach() };
+            let bases: &mut dyn BaseDistribution = if number == 0 { &mut inverse } else { &mut uniform };
+            let start = now();
+            let checker = MobileChecker::new(
+                problem.scene,
+                floor,
+                arm.space(),
+                arm.dofs(),
+                &task.start,
+                rules.clone(),
+                planner.resolution,
+            );
+            let rest = task.start.select(arm.dofs());
+            let mut cell = Cell { arm: &arm, checker, moved: &moved, rest };
+            let mut sampler =
+                BasePlacement::new(&mut cell, bases, &arms, PlacementOptions::default(), Seed::new(seed));
+            let found = loop {
+                match sampler.draw(&Budget::unlimited()) {
+                    Ok(GoalDraw::Pending) => {}
+                    Ok(GoalDraw::Goal(_)) => break true,
+                    Ok(GoalDraw::Exhausted) | Err(_) => break false,
+                }
+            };
+            let places = sampler.rejections.places;
+            runs.push((found, 1e3 * (now() - start), places));
+        }
+    }
+    let [inverse, uniform] = runs.map(|runs| figures(&runs));
+    let times_faster = uniform.mean_ms / inverse.mean_ms.max(f64::MIN_POSITIVE);
+    let bases = vec![
+        PlacementFigures { bases: "inverse", ..inverse },
+        PlacementFigures { bases: "uniform", ..uniform },
+    ];
+    Some(PlacementReport { scene: task.name.clone(), grasps: grasps.len(), prepare_ms, bases, times_faster })
+}
+
+fn figures(runs: &[(bool, f64, u32)]) -> PlacementFigures {
+    let count = runs.len().max(1) as f64;
+    let mut times: Vec<f64> = runs.iter().map(|run| run.1).collect();
+    times.sort_by(f64::total_cmp);
+    PlacementFigures {
+        bases: "",
+        solved: runs.iter().filter(|run| run.0).count() as u64,
+        median_ms: times.get(times.len() / 2).copied().unwrap_or(0.0),
+        mean_ms: times.iter().sum::<f64>() / count,
+        places: runs.iter().map(|run| f64::from(run.2)).sum::<f64>() / count,
+    }
+}
+
+/// The robot on wheels among the things of the task.
+struct Cell<'a> {
+    arm: &'a ArmModel,
+    checker: MobileChecker<'a>,
+    /// Links that the arm moves; the others go with the base.
+    moved: &'a [LinkIdx],
+    rest: Vec<f64>,
+}
+
+impl PlacementProblem for Cell<'_> {
+    fn grasp_is_free(&mut self, _: usize, _: usize) -> Result<(), Obstruction> {
+        // Only free ones are goals.
+        Ok(())
+    }
+
+    fn base_is_free(&mut self, _: usize, base: &[f64; 3]) -> Result<(), Obstruction> {
+        let moved = self.moved;
+        self.checker.base_is_free(base, &|link| !moved.contains(&link))
+    }
+
+    fn solutions(&mut self, _: usize, base: &[f64; 3], world_from_tool: &Pose) -> Vec<Vec<f64>> {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), base[2]);
+        let world_from_base = Pose::from_parts(Translation3::new(base[0], base[1], 0.0), turn);
+        let free: Vec<f64> = self.arm.free_variables().iter().map(|&v| self.rest[v]).collect();
+        let scratch = &mut IkSolutions::new();
+        let (found, _) = self.arm.inverse(&world_from_base.inv_mul(world_from_tool), &free, &self.rest, scratch);
+        found.into_iter().map(|q| [&base[..], &q].concat()).collect()
+    }
+
+    fn is_free(&mut self, q: &[f64]) -> Result<(), Obstruction> {
+        self.checker.state(q).map(|_| ())
+    }
+}
