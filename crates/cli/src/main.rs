@@ -3,6 +3,7 @@
 
 mod args;
 mod commands;
+mod description;
 mod input;
 mod knowledge;
 mod output;

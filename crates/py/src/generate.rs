@@ -1,5 +1,6 @@
 //! Inverse kinematics generated from a URDF alone.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use numpy::{PyArray2, PyReadonlyArray2};
@@ -20,9 +21,10 @@ pub(crate) struct GeneratedSolver {
     solver: Solver,
 }
 
-/// Compiles the chain from link `base` to link `tip` of a URDF or xacro file; `free` names joints whose values will be given.
+/// Compiles the chain from link `base` to link `tip` of a URDF or xacro file; `free` names joints whose values will be
+/// given; `packages` says where packages are, `arguments` are values for a xacro file.
 #[pyfunction(name = "_generate_ik")]
-#[pyo3(signature = (urdf, base, tip, free = None, tolerance = None))]
+#[pyo3(signature = (urdf, base, tip, free = None, tolerance = None, *, packages = None, arguments = None))]
 pub(crate) fn generate_ik(
     py: Python<'_>,
     urdf: PathBuf,
@@ -30,9 +32,15 @@ pub(crate) fn generate_ik(
     tip: &str,
     free: Option<Vec<String>>,
     tolerance: Option<f64>,
+    packages: Option<BTreeMap<String, PathBuf>>,
+    arguments: Option<BTreeMap<String, String>>,
 ) -> PyResult<GeneratedSolver> {
     let mut sources = Sources::new();
-    let load = LoadOptions { meshes: MeshPolicy::Ignore, ..LoadOptions::default() };
+    let load = LoadOptions {
+        packages: packages.unwrap_or_default(),
+        arguments: arguments.unwrap_or_default(),
+        meshes: MeshPolicy::Ignore,
+    };
     let (model, found) = urdf::load(&OsSystem, &mut sources, &urdf, &load);
     let model = accept(py, model, &found, &sources)?;
     let link = |name: &str| {

@@ -7,13 +7,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clap::{Args, Subcommand};
-use robotc_core::urdf::{self, LoadOptions};
+use robotc_core::urdf::{self, MeshPolicy};
 use robotc_core::{Sources, srdf};
 use robotc_kb::os::OsSystem;
 use robotc_planning::bench::{self, BenchOptions, BenchRobot, ProblemSet, Report, Summary};
 
 use super::bench_tasks;
 use super::compile::write_whole;
+use crate::description::DescriptionArgs;
 use crate::output::{Failure, Outcome, print, say};
 use crate::progress::Progress;
 
@@ -44,6 +45,8 @@ struct Input {
     /// Its semantic description: pairs of links that need no test
     #[arg(long, value_name = "FILE")]
     srdf: PathBuf,
+    #[command(flatten)]
+    reading: DescriptionArgs,
     /// File for all figures
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
@@ -144,7 +147,8 @@ fn motion(args: &Motion) -> Outcome {
 fn robot(input: &Input, set: &ProblemSet, now: &dyn Fn() -> f64) -> Outcome<(BenchRobot, f64)> {
     let start = now();
     let mut sources = Sources::new();
-    let (model, found) = urdf::load(&OsSystem, &mut sources, &input.urdf, &LoadOptions::default());
+    let (model, found) =
+        urdf::load(&OsSystem, &mut sources, &input.urdf, &input.reading.options(MeshPolicy::default()));
     let model = Arc::new(crate::input::accept(model, &found, &sources)?);
     let (srdf, found) = srdf::load(&OsSystem, &mut sources, &input.srdf, None);
     let srdf = crate::input::accept(srdf, &found, &sources)?;

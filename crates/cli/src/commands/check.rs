@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use robotc_core::Sources;
 use robotc_core::spec;
+use robotc_core::urdf::MeshPolicy;
 use robotc_kb::os::OsSystem;
 
+use crate::description::DescriptionArgs;
 use crate::output::{Failure, Outcome, print, report};
 
 /// Check specifications and robot descriptions
@@ -19,14 +21,17 @@ pub(crate) struct Check {
     /// Files of any of these kinds
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
+    #[command(flatten)]
+    reading: DescriptionArgs,
 }
 
 pub(crate) fn run(args: &Check) -> Outcome {
     let table = robotc_kb::kinds::parameter_table();
+    let load = args.reading.options(MeshPolicy::SkipAway);
     let mut failed = false;
     for file in &args.files {
         let mut sources = Sources::new();
-        let (summary, found) = spec::check(&OsSystem, &mut sources, file, &table);
+        let (summary, found) = spec::check(&OsSystem, &mut sources, file, &table, &load);
         report(&found, &sources);
         match summary {
             Some(summary) => {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use robotc_core::urdf::{self, LoadOptions, MeshPolicy};
+use robotc_core::urdf::{self, MeshPolicy};
 use robotc_core::{Kinematics, LinkIdx, RobotModel, SerialChain, Sources, diag};
 use robotc_ikgen::backend::RustOptions;
 use robotc_ikgen::report::{ProofOptions, Report, prove};
@@ -12,6 +12,7 @@ use robotc_ikgen::{Compiled, Options, compile};
 use robotc_kb::os::OsSystem;
 
 use super::compile::write_whole;
+use crate::description::DescriptionArgs;
 use crate::output::{Failure, Outcome, print, say};
 
 /// Compile and prove the inverse kinematics of a chain of a URDF
@@ -30,6 +31,8 @@ pub(crate) struct Ik {
     /// Link where it ends
     #[arg(long, value_name = "LINK")]
     tip: String,
+    #[command(flatten)]
+    reading: DescriptionArgs,
     /// Joints whose values the caller gives, separated by commas [default: chosen when there are seven joints]
     #[arg(long, value_name = "JOINT", value_delimiter = ',')]
     free: Option<Vec<String>>,
@@ -111,7 +114,7 @@ pub(crate) fn run(args: &Ik) -> Outcome {
 
 fn chain(args: &Ik) -> Outcome<SerialChain> {
     let mut sources = Sources::new();
-    let options = LoadOptions { meshes: MeshPolicy::Ignore, ..LoadOptions::default() };
+    let options = args.reading.options(MeshPolicy::Ignore);
     let (model, found) = urdf::load(&OsSystem, &mut sources, &args.urdf, &options);
     let model = crate::input::accept(model, &found, &sources)?;
     let (base, tip) = (link(&model, &args.base)?, link(&model, &args.tip)?);

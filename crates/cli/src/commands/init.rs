@@ -1,14 +1,15 @@
 //! `robotc init`: a first robot specification for a description.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use clap::Args;
 use robotc_core::Sources;
 use robotc_core::spec::{self, InitOptions};
+use robotc_core::urdf::{LoadOptions, MeshPolicy};
 use robotc_kb::os::OsSystem;
 
 use super::compile::write_whole;
+use crate::description::DescriptionArgs;
 use crate::output::{Failure, Outcome, print_text, report, say};
 
 /// Write a commented robot specification for a URDF or xacro file, with guesses to be checked
@@ -25,9 +26,8 @@ pub(crate) struct Init {
     /// MoveIt's joint_limits.yaml
     #[arg(long, value_name = "FILE")]
     joint_limits: Option<PathBuf>,
-    /// Folder of a package that the description refers to; may be given several times
-    #[arg(long, value_name = "NAME=FOLDER", value_parser = package)]
-    package: Vec<(String, PathBuf)>,
+    #[command(flatten)]
+    reading: DescriptionArgs,
     /// File to write [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -35,11 +35,13 @@ pub(crate) struct Init {
 
 pub(crate) fn run(args: &Init) -> Outcome {
     let mut sources = Sources::new();
+    let LoadOptions { packages, arguments, .. } = args.reading.options(MeshPolicy::SkipAway);
     let options = InitOptions {
         description: args.description.clone(),
         srdf: args.srdf.clone(),
         joint_limits: args.joint_limits.clone(),
-        packages: args.package.iter().cloned().collect::<BTreeMap<_, _>>(),
+        packages,
+        arguments,
         folder: args.output.as_ref().and_then(|path| path.parent()).map(PathBuf::from).unwrap_or_default(),
     };
     let (text, found) = spec::init(&OsSystem, &mut sources, &options);
@@ -56,9 +58,4 @@ pub(crate) fn run(args: &Init) -> Outcome {
         }
     }
     Ok(())
-}
-
-fn package(text: &str) -> Result<(String, PathBuf), String> {
-    let (name, folder) = text.split_once('=').ok_or("expected NAME=FOLDER")?;
-    Ok((name.to_owned(), PathBuf::from(folder)))
 }

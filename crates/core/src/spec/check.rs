@@ -9,7 +9,7 @@ use crate::diag::{Diagnostic, Diagnostics, Severity, Sources};
 use crate::model::RobotModel;
 use crate::robot::{Base, Robot};
 use crate::system::System;
-use crate::urdf::{self, LoadOptions, MeshPolicy};
+use crate::urdf::{self, LoadOptions};
 use crate::{joint_limits, srdf};
 
 /// What a checked file holds, in a few lines for people.
@@ -36,12 +36,14 @@ enum FileKind {
 /// Checks the file at `path` with all it refers to: a robot or task specification, a URDF or xacro description, an SRDF or a
 /// `joint_limits.yaml`. The summary is there exactly when nothing found is an error.
 ///
-/// The ending of the name decides what it is; where that is silent, the content does.
+/// The ending of the name decides what it is; where that is silent, the content does. `load` is for a description: a robot
+/// specification says itself where packages are.
 pub fn check(
     system: &dyn System,
     sources: &mut Sources,
     path: &Path,
     parameters: &ParameterTable,
+    load: &LoadOptions,
 ) -> (Option<Summary>, Diagnostics) {
     let mut diagnostics = Diagnostics::new();
     let Some(kind) = kind_of(system, path, &mut diagnostics) else { return (None, diagnostics) };
@@ -55,8 +57,7 @@ pub fn check(
             (spec.as_ref().map(of_task), found)
         }
         FileKind::Description => {
-            let alone = LoadOptions { meshes: MeshPolicy::SkipAway, ..LoadOptions::default() };
-            let (model, found) = urdf::load(system, sources, path, &alone);
+            let (model, found) = urdf::load(system, sources, path, load);
             (model.as_ref().map(of_model), found)
         }
         FileKind::Semantics => {

@@ -81,7 +81,11 @@ fn read(
         }
         Some((entry.key.clone(), folder))
     });
-    let options = LoadOptions { packages: packages.collect(), ..LoadOptions::default() };
+    let packages = packages.collect();
+    let arguments = table.entries("arguments").iter();
+    let arguments =
+        arguments.filter_map(|entry| Some((entry.key.clone(), entry.node.text()?.to_owned()))).collect();
+    let options = LoadOptions { packages, arguments, ..LoadOptions::default() };
     let description = description?;
     let (model, found) = urdf::load(system, sources, &description, &options);
     diagnostics.extend(found);

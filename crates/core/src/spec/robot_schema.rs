@@ -29,6 +29,11 @@ pub(super) static ROBOT: TableSchema = TableSchema {
             "Folder of each ROS package that mesh paths `package://NAME/...` name. Packages not listed are looked for \
              beside and above the description.",
         ),
+        Key::optional(
+            "arguments",
+            Kind::Map(Text::Argument, &Kind::Text(Text::Any)),
+            "Values of the arguments (`$(arg NAME)`) of a xacro description; they override its defaults.",
+        ),
         Key::optional("base", Kind::Table(&BASE), "How the robot stands.").default("{ kind = \"fixed\" }"),
         Key::optional(
             "arm",

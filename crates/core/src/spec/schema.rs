@@ -86,6 +86,10 @@ pub enum Text {
     Object,
     /// A ROS package.
     Package,
+    /// An argument of a xacro file.
+    Argument,
+    /// Any text.
+    Any,
 }
 
 impl Text {
@@ -101,6 +105,8 @@ impl Text {
             Self::Gripper => "a gripper name",
             Self::Object => "an object name",
             Self::Package => "a package name",
+            Self::Argument => "the name of a xacro argument",
+            Self::Any => "a text",
         }
     }
 

@@ -54,8 +54,20 @@ pub(crate) fn package_folder(
         if folder.file_name().is_some_and(|f| f == name) {
             return Some(folder.to_path_buf());
         }
-        Some(folder.join(name)).filter(|inside| system.exists(inside))
+        let inside = folder.join(name);
+        if system.exists(&inside) {
+            return Some(inside);
+        }
+        is_package(system, &folder, name).then_some(folder)
     })
+}
+
+/// Whether a folder is the package of this name, by its `package.xml`: checkouts are often called otherwise.
+fn is_package(system: &dyn System, folder: &Path, name: &str) -> bool {
+    let Ok(manifest) = system.read(&folder.join("package.xml")) else { return false };
+    let manifest = String::from_utf8_lossy(&manifest);
+    let written = manifest.split_once("<name>").and_then(|(_, rest)| rest.split_once("</name>"));
+    written.is_some_and(|(written, _)| written.trim() == name)
 }
 
 /// Whether the folder that `uri` means does not exist here: the file is not missing, but somewhere else.

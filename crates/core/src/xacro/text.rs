@@ -88,7 +88,9 @@ impl Expander<'_> {
                 let find = |from: &Path| package_folder(self.system, self.packages, from, rest);
                 match find(&file).or_else(|| find(&main)) {
                     Some(folder) => Ok(self.folder(folder, Some(rest))),
-                    None => Err(format!("package `{rest}` is not known; say where it is under [packages]")),
+                    None => Err(format!(
+                        "package `{rest}` is not known: say where it is by `--package {rest}=FOLDER`, or under [packages]"
+                    )),
                 }
             }
             "dirname" => {
@@ -134,7 +136,7 @@ impl Expander<'_> {
         let value = self.arguments.get(name);
         value
             .map(|text| Value::from_text(text))
-            .ok_or_else(|| format!("argument `{name}` is neither given nor declared"))
+            .ok_or_else(|| format!("argument `{name}` is neither given nor declared: give it by `--argument {name}=VALUE`, or under [arguments]"))
     }
 
     /// The property of this name as seen from the outermost `top` scopes.

@@ -4,13 +4,15 @@ use std::path::Path;
 
 use robotc_core::diag::Sources;
 use robotc_core::spec::check;
+use robotc_core::urdf::LoadOptions;
 
 use super::disk::{Disk, parameters};
 
 fn summary(file: &str) -> Result<(&'static str, String, String), String> {
     let mut sources = Sources::new();
     let disk = Disk::of_checkout("tests/specs");
-    let (summary, found) = check(&disk, &mut sources, Path::new(file), &parameters());
+    let (summary, found) =
+        check(&disk, &mut sources, Path::new(file), &parameters(), &LoadOptions::default());
     assert_ne!(summary.is_some(), found.has_errors());
     match summary {
         Some(summary) => Ok((summary.what, summary.name, summary.facts.join("; "))),

@@ -1,4 +1,4 @@
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from . import Array, Path
 
@@ -37,6 +37,16 @@ class GeneratedSolver:
         """Writes the solver to a file: Rust (`.rs`), C with its header beside it (`.c`), or the solution program (`.ik`)."""
 
 def generate(
-    urdf: Path, base: str, tip: str, free: Sequence[str] | None = None, tolerance: float | None = None
+    urdf: Path,
+    base: str,
+    tip: str,
+    free: Sequence[str] | None = None,
+    tolerance: float | None = None,
+    *,
+    packages: Mapping[str, Path] | None = None,
+    arguments: Mapping[str, str] | None = None,
 ) -> GeneratedSolver:
-    """Compiles the chain between two links of a URDF or xacro file; `CompileError` says why it cannot be solved."""
+    """Compiles the chain between two links of a URDF or xacro file; `CompileError` says why it cannot be solved.
+
+    `packages` says where ROS packages are; `arguments` are values for the arguments of a xacro file.
+    """

@@ -33,6 +33,8 @@ pub struct InitOptions {
     pub joint_limits: Option<PathBuf>,
     /// Folders of packages.
     pub packages: BTreeMap<String, PathBuf>,
+    /// Values of xacro arguments.
+    pub arguments: BTreeMap<String, String>,
     /// The folder that the specification will be written to: paths in it start there. Empty: the current one.
     pub folder: PathBuf,
 }
@@ -47,8 +49,8 @@ pub fn init(
     sources: &mut Sources,
     options: &InitOptions,
 ) -> (Option<String>, Diagnostics) {
-    let packages = options.packages.clone();
-    let load = LoadOptions { packages, meshes: MeshPolicy::SkipAway, ..LoadOptions::default() };
+    let (packages, arguments) = (options.packages.clone(), options.arguments.clone());
+    let load = LoadOptions { packages, arguments, meshes: MeshPolicy::SkipAway };
     let (model, mut diagnostics) = urdf::load(system, sources, &options.description, &load);
     let Some(mut model) = model else { return (None, diagnostics) };
     if let Some(path) = &options.joint_limits {

@@ -30,6 +30,12 @@ pub(super) fn write(guess: &Guess, options: &InitOptions) -> String {
             text += &format!("{} = {}\n", quoted(name), path_text(&relative(&options.folder, folder)));
         }
     }
+    if !options.arguments.is_empty() {
+        text += "\n[arguments]\n";
+        for (name, value) in &options.arguments {
+            text += &format!("{} = {}\n", quoted(name), quoted(value));
+        }
+    }
     text += &base(&guess.base);
     for arm in &guess.arms {
         text += &arm_text(arm, guess);
