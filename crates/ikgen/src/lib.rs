@@ -69,6 +69,7 @@ pub mod backend;
 pub mod check;
 #[cfg(feature = "generate")]
 pub mod generate;
+pub mod goal;
 pub mod ir;
 pub mod kernel;
 pub mod passes;
@@ -80,6 +81,7 @@ pub mod run;
 pub use backend::RustOptions;
 #[cfg(feature = "generate")]
 pub use generate::{Compiled, Options, Refusal, compile};
+pub use goal::GoalType;
 pub use ir::Program;
 #[cfg(feature = "generate")]
 pub use report::{ProofOptions, Report, prove};

@@ -8,7 +8,8 @@ use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use robotc_core::urdf::{self, LoadOptions, MeshPolicy};
 use robotc_core::{Kinematics, SerialChain, Sources};
-use robotc_ikgen::{Compiled, Options, RustOptions, Solver, compile};
+use robotc_ikgen::generate::natural;
+use robotc_ikgen::{Compiled, GoalType, Options, RustOptions, Solver, compile};
 use robotc_kb::os::OsSystem;
 
 use crate::errors::{CompileError, accept};
@@ -24,7 +25,10 @@ pub(crate) struct GeneratedSolver {
 /// Compiles the chain from link `base` to link `tip` of a URDF or xacro file; `free` names joints whose values will be
 /// given; `packages` says where packages are, `arguments` are values for a xacro file.
 #[pyfunction(name = "_generate_ik")]
-#[pyo3(signature = (urdf, base, tip, free = None, tolerance = None, *, packages = None, arguments = None))]
+#[pyo3(signature = (
+    urdf, base, tip, free = None, tolerance = None, r#type = "transform6d", *, packages = None, arguments = None
+))]
+#[allow(clippy::too_many_arguments, reason = "most are keywords")]
 pub(crate) fn generate_ik(
     py: Python<'_>,
     urdf: PathBuf,
@@ -32,6 +36,7 @@ pub(crate) fn generate_ik(
     tip: &str,
     free: Option<Vec<String>>,
     tolerance: Option<f64>,
+    r#type: &str,
     packages: Option<BTreeMap<String, PathBuf>>,
     arguments: Option<BTreeMap<String, String>>,
 ) -> PyResult<GeneratedSolver> {
@@ -59,7 +64,18 @@ pub(crate) fn generate_ik(
         free.sort_unstable();
         free.dedup();
     }
-    let mut options = Options { free, ..Options::default() };
+    let goal = match GoalType::from_name(r#type) {
+        Some(goal) => goal,
+        None if r#type == "auto" => natural(&chain),
+        None => {
+            let known = GoalType::ALL.map(GoalType::name).join(", ");
+            return Err(PyValueError::new_err(format!(
+                "there is no type {:?}; there are auto, {known}",
+                r#type
+            )));
+        }
+    };
+    let mut options = Options { goal, free, ..Options::default() };
     if let Some(tolerance) = tolerance {
         if !(tolerance.is_finite() && tolerance >= 0.0) {
             return Err(PyValueError::new_err("the tolerance cannot be negative"));
@@ -79,6 +95,12 @@ impl GeneratedSolver {
         &self.compiled.class
     }
 
+    /// What it is asked for: the name of the goal type.
+    #[getter]
+    fn r#type(&self) -> &'static str {
+        self.compiled.program.goal.name()
+    }
+
     #[getter]
     fn joint_names(&self) -> Vec<String> {
         self.compiled.chain().variables.iter().map(|v| v.name.clone()).collect()
@@ -86,7 +108,7 @@ impl GeneratedSolver {
 
     #[getter]
     fn free_joints(&self) -> Vec<String> {
-        let variables = &self.compiled.chain().variables;
+        let variables = &self.compiled.longer_chain().variables;
         self.compiled.free.iter().map(|&i| variables[i].name.clone()).collect()
     }
 

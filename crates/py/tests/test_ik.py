@@ -55,6 +55,22 @@ def test_sources(solver, tmp_path):
         solver.write(tmp_path / "arm.txt")
 
 
+def test_types(solver):
+    assert solver.type == "transform6d"
+    elbow = robotc.ik.generate(PANDA, "panda_link0", "panda_link4", type="translation3d")
+    joints = [0.1, -0.4, 0.3, -1.8]
+    pose = elbow.fk(joints)
+    free = [joints[elbow.joint_names.index(name)] for name in elbow.free_joints]
+    anyhow = np.eye(4)
+    anyhow[:3, 3] = pose[:3, 3]
+    solutions = elbow.solve(anyhow, free=free)
+    assert len(solutions) > 0
+    for solution in solutions:
+        np.testing.assert_allclose(elbow.fk(solution)[:3, 3], pose[:3, 3], atol=1e-9)
+    with pytest.raises(ValueError, match="there is no type 'ray'|no type \\"ray\\""):
+        robotc.ik.generate(PANDA, "panda_link0", "panda_link4", type="ray")
+
+
 def test_unknown_names():
     with pytest.raises(KeyError, match="no link nowhere"):
         robotc.ik.generate(PANDA, "panda_link0", "nowhere")

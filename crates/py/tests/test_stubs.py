@@ -49,7 +49,7 @@ def test_members_and_parameters():
                 continue
             else:
                 parameters = list(inspect.signature(getattr(native, name)).parameters)[1:]
-            declared = [a.arg for a in function.args.args][1:]
+            declared = [a.arg for a in function.args.args + function.args.kwonlyargs][1:]
             assert declared == parameters, f"{node.name}.{name}"
 
 

@@ -7,8 +7,9 @@ use clap::{Args, ValueEnum};
 use robotc_core::urdf::{self, MeshPolicy};
 use robotc_core::{Kinematics, LinkIdx, RobotModel, SerialChain, Sources, diag};
 use robotc_ikgen::backend::RustOptions;
+use robotc_ikgen::generate::natural;
 use robotc_ikgen::report::{ProofOptions, Report, prove};
-use robotc_ikgen::{Compiled, Options, compile};
+use robotc_ikgen::{Compiled, GoalType, Options, compile};
 use robotc_kb::os::OsSystem;
 
 use super::compile::write_whole;
@@ -19,7 +20,8 @@ use crate::output::{Failure, Outcome, print, say};
 #[derive(Args)]
 #[command(after_help = "Examples:\n  robotc ik arm.urdf --base base_link --tip tool0\n  \
     robotc ik arm.urdf --base base_link --tip tool0 -o arm_ik.rs --report arm_ik.json\n  \
-    robotc ik arm.urdf --base base_link --tip tool0 -o arm_ik.c\n\n\
+    robotc ik arm.urdf --base base_link --tip tool0 -o arm_ik.c\n  \
+    robotc ik welder.urdf --base base_link --tip torch --type translationdirection5d\n\n\
     The source is one Rust file without dependencies that needs neither std nor memory allocation, or a C99 source with its \
     header. It is written only when the solver passed its proof.")]
 pub(crate) struct Ik {
@@ -31,6 +33,11 @@ pub(crate) struct Ik {
     /// Link where it ends
     #[arg(long, value_name = "LINK")]
     tip: String,
+    /// What the solver is asked for: transform6d, rotation3d, translation3d, direction3d, ray4d, lookat3d, translationdirection5d,
+    /// translationxy2d, translationxyorientation3d, translationlocalglobal6d, translation{x,y,z}axisangle4d,
+    /// translation{xaxisangleznorm,yaxisanglexnorm,zaxisangleynorm}4d, or auto: what the joints suggest
+    #[arg(long = "type", value_name = "NAME", default_value = "transform6d", hide_default_value = true, value_parser = goal_type)]
+    goal: Goal,
     #[command(flatten)]
     reading: DescriptionArgs,
     /// Joints whose values the caller gives, separated by commas [default: chosen when there are seven joints]
@@ -66,6 +73,24 @@ pub(crate) struct Ik {
     explain: bool,
 }
 
+/// The argument `--type`.
+#[derive(Debug, Clone, Copy)]
+enum Goal {
+    Auto,
+    Type(GoalType),
+}
+
+fn goal_type(name: &str) -> Result<Goal, String> {
+    if name == "auto" {
+        return Ok(Goal::Auto);
+    }
+    let known = GoalType::ALL.map(GoalType::name);
+    GoalType::from_name(name).map(Goal::Type).ok_or_else(|| match diag::nearest(name, known.into_iter()) {
+        Some(near) => format!("did you mean {near}?"),
+        None => format!("there are auto, {}", known.join(", ")),
+    })
+}
+
 /// What a solver is written in: one Rust file, C99 source and header, or the solution program that the run-time library loads.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Language {
@@ -79,7 +104,12 @@ pub(crate) fn run(args: &Ik) -> Outcome {
     if !args.tolerance.is_finite() || args.tolerance < 0.0 {
         return Err(Failure::Input("--tolerance cannot be negative".into()));
     }
+    let goal = match args.goal {
+        Goal::Auto => natural(&chain),
+        Goal::Type(goal) => goal,
+    };
     let options = Options {
+        goal,
         tolerance: if args.no_snap { 0.0 } else { args.tolerance },
         free: args.free.as_ref().map(|names| free_variables(&chain, names)).transpose()?,
         ..Options::default()
@@ -93,7 +123,7 @@ pub(crate) fn run(args: &Ik) -> Outcome {
             let now = || clock.elapsed().as_secs_f64();
             (prove(compiled, generation_s, &proof, &now), &compiled.trace, Some(compiled))
         }
-        Err(refusal) => (Report::refused(refusal, generation_s), &refusal.trace, None),
+        Err(refusal) => (Report::refused(refusal, goal, generation_s), &refusal.trace, None),
     };
     if args.explain {
         trace.iter().for_each(|line| print(line));
@@ -148,6 +178,9 @@ fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str> + Cl
 
 fn show(chain: &SerialChain, report: &Report) {
     print(&format!("{}: {}", chain.name, report.class));
+    if let Some(goal) = GoalType::from_name(&report.kind).filter(|goal| *goal != GoalType::default()) {
+        print(&format!("{}: {}", goal.name(), goal.meaning()));
+    }
     if !report.free_joints.is_empty() {
         print(&format!("free joints: {}", report.free_joints.join(", ")));
     }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::CAPACITY;
+use crate::GoalType;
 use crate::ir::{Block, Expr, Program, RootKind, Stmt, Value};
 use crate::kernel::chain::Frame;
 use crate::run::TrueChain;
@@ -91,7 +92,16 @@ fn about(program: &Program) -> String {
 fn header(program: &Program, chain: &TrueChain, name: &str) -> String {
     let guard = format!("{}_H", name.to_uppercase());
     let upper = name.to_uppercase();
-    let (variables, free, links) = (program.variables, program.free.len(), chain.links.len());
+    let (variables, free, links) = (program.chain_variables(), program.free.len(), chain.links.len());
+    let goal = if program.goal == GoalType::default() {
+        String::new()
+    } else {
+        format!(
+            "\n   Of a pose only a part is asked for, {}: {}. The rest may be anything.",
+            program.goal.name(),
+            program.goal.meaning()
+        )
+    };
     let list: Vec<String> = program.free.iter().map(|v| format!("{v}")).collect();
     let given = match &list[..] {
         [] => "There are none: `given` may be NULL.".to_owned(),
@@ -111,7 +121,7 @@ fn header(program: &Program, chain: &TrueChain, name: &str) -> String {
          double values[{upper}_CAPACITY][{upper}_VARIABLES];\n    int count;\n}} {name}_solutions;\n\n\
          /* The chain as described. */\nextern const {name}_chain {name}_described;\n\n\
          /* Pose of the tip at these values. */\nvoid {name}_forward(const double values[{upper}_VARIABLES], {name}_frame *base_from_tip);\n\n\
-         /* All solutions for a pose of the chain as described; returns their number. */\n\
+         /* All solutions for a pose of the chain as described; returns their number.{goal} */\n\
          int {name}_solve(const {name}_frame *base_from_tip, const double *given, {name}_solutions *out);\n\n\
          /* The same for a chain whose constants are near those of the described one: a calibrated arm. */\n\
          int {name}_solve_on(const {name}_chain *chain, const {name}_frame *base_from_tip, const double *given, {name}_solutions *out);\n\n\
@@ -122,23 +132,51 @@ fn header(program: &Program, chain: &TrueChain, name: &str) -> String {
 
 fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> String {
     let upper = name.to_uppercase();
+    let added = program.chain_variables() < program.variables;
+    let all = if added { program.variables.to_string() } else { format!("{upper}_VARIABLES") };
+    let forward = if added {
+        format!(
+            "    double all[IK_VARIABLES];\n    int i;\n    \
+             for (i = 0; i < IK_VARIABLES; i++) all[i] = i < IK_JOINTS ? values[i] : ik_rest[i - IK_JOINTS];\n    \
+             ik_reach(&{name}_described, all, base_from_tip, axes);\n"
+        )
+    } else {
+        format!("    ik_reach(&{name}_described, values, base_from_tip, axes);\n")
+    };
     let mut out = about(program);
     let _ = write!(
         out,
         "\n#include \"{name}.h\"\n\n#include <math.h>\n#include <stdint.h>\n\n\
          /* Compile without contraction of products and sums (gcc and clang: -ffp-contract=off) for the same bits everywhere;\n   \
          with IK_FREESTANDING nothing of the C library is called. */\n\n\
-         #define IK_VARIABLES {upper}_VARIABLES\n#define IK_LINKS {upper}_LINKS\n#define IK_CAPACITY {upper}_CAPACITY\n\
+         #define IK_JOINTS {upper}_VARIABLES\n#define IK_VARIABLES {all}\n#define IK_LINKS {upper}_LINKS\n#define IK_CAPACITY {upper}_CAPACITY\n\
          typedef {name}_frame ik_frame;\ntypedef {name}_link ik_link;\ntypedef {name}_chain ik_chain;\ntypedef {name}_solutions ik_solutions;\n\n"
     );
     let flags = |flags: Vec<bool>| {
         let words: Vec<&str> = flags.into_iter().map(|f| if f { "1" } else { "0" }).collect();
         words.join(", ")
     };
+    let mut joints = String::new();
+    if added {
+        let list = |values: Vec<f64>| {
+            values
+                .iter()
+                .map(|x| if x.is_finite() { format!("{x:?}") } else { "-1e300".into() })
+                .collect::<Vec<_>>()
+        };
+        let _ = write!(
+            joints,
+            "/* Joints that stand for what the goal leaves open: where they turn nothing, and the smallest values of a solution. */\n\
+             static const double ik_rest[IK_VARIABLES - IK_JOINTS] = {{ {} }};\n\
+             static const double ik_least[IK_VARIABLES - IK_JOINTS] = {{ {} }};\n\n",
+            list(program.goal.at_rest()).join(", "),
+            list(program.goal.least()).join(", ")
+        );
+    }
     let held = (0..program.variables).map(|v| program.free.contains(&v)).collect();
     let _ = write!(
         out,
-        "/* Which variables are lengths, and which are given. */\nstatic const int ik_slides[IK_VARIABLES] = {{ {} }};\n\
+        "{joints}/* Which variables are lengths, and which are given. */\nstatic const int ik_slides[IK_VARIABLES] = {{ {} }};\n\
          static const int ik_held[IK_VARIABLES] = {{ {} }};\n\n",
         flags(chain.slides.clone()),
         flags(held)
@@ -148,6 +186,7 @@ fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> Strin
         let start = format!("/* == {section} == */\n");
         let text = KERNEL.split(&start).nth(1).expect("every section is in the file");
         let text = text.split("/* == ").next().expect("split gives one at least");
+        let text = if added { text.to_owned() } else { without_added(text) };
         let _ = write!(out, "{}\n\n", text.trim_end());
     }
     out += "/* Offers candidates; the equations may miss their roots by `slack`. */\n\
@@ -171,7 +210,7 @@ fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> Strin
          for (i = 0; i < 3; i++) {{\n        if (sink.accepted > 0 || (i > 0 && slacks[i] <= slacks[0])) continue;\n        \
          sink.misses = 0;\n        ik_attempt(pose, given, slacks[i], &sink);\n    }}\n    return out->count;\n}}\n\n\
          void {name}_forward(const double values[{upper}_VARIABLES], {name}_frame *base_from_tip)\n{{\n    \
-         double axes[IK_LINKS][6];\n    ik_reach(&{name}_described, values, base_from_tip, axes);\n}}\n\n\
+         double axes[IK_LINKS][6];\n{forward}}}\n\n\
          int {name}_solve(const {name}_frame *base_from_tip, const double *given, {name}_solutions *out)\n{{\n    \
          return ik_solve_with(&{name}_described, 1, base_from_tip, given, out);\n}}\n\n\
          int {name}_solve_on(const {name}_chain *chain, const {name}_frame *base_from_tip, const double *given, {name}_solutions *out)\n{{\n    \
@@ -179,6 +218,11 @@ fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> Strin
         program.slack
     );
     out
+}
+
+/// A section of the kernel less the lines for joints that a goal adds.
+fn without_added(text: &str) -> String {
+    text.lines().filter(|line| !line.contains("ik_least")).map(|line| format!("{line}\n")).collect()
 }
 
 /// Whether a section is called by the body, by the fixed part, or by a section that is.

@@ -625,17 +625,18 @@ static void ik_offer(ik_sink *sink, double steps[IK_VARIABLES][2], double values
         sink->misses++;
         return;
     }
+    for (i = IK_JOINTS; i < IK_VARIABLES; i++) if (values[i] < ik_least[i - IK_JOINTS] - 1e-9) return;
     sink->accepted++;
     for (k = 0; k < sink->out->count; k++) {
         const double *other = sink->out->values[k];
-        for (i = 0; i < IK_VARIABLES; i++) {
+        for (i = 0; i < IK_JOINTS; i++) {
             double gap = ik_abs(values[i] - other[i]);
             if (gap >= 1e-7 && (ik_slides[i] || ik_abs(gap - 6.283185307179586) >= 1e-7)) break;
         }
-        if (i == IK_VARIABLES) return;
+        if (i == IK_JOINTS) return;
     }
     if (sink->out->count < IK_CAPACITY) {
-        for (i = 0; i < IK_VARIABLES; i++) sink->out->values[sink->out->count][i] = values[i];
+        for (i = 0; i < IK_JOINTS; i++) sink->out->values[sink->out->count][i] = values[i];
         sink->out->count++;
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::CAPACITY;
+use crate::GoalType;
 use crate::ir::{Block, Expr, Program, RootKind, Stmt, Value};
 use crate::kernel::chain::Frame;
 use crate::kernel::{
@@ -23,11 +24,58 @@ pub fn rust_source(program: &Program, chain: &TrueChain, options: &RustOptions) 
     let mut out = String::new();
     header(program, &mut out);
     constants(program, chain, &mut out);
-    out += API;
+    out += &api(program);
     solve(program, &mut out);
     kernel(program, options, &mut out);
-    out += TESTS;
+    out += &tests(program);
     out
+}
+
+/// The tests that a file carries. Of a goal that is not the whole pose only the joint vector can be compared.
+fn tests(program: &Program) -> String {
+    if program.goal == GoalType::default() {
+        return TESTS.into();
+    }
+    let check = "            assert!(found.as_slice().iter().all(|values| forward(values).distance(&pose) < 1e-9));\n";
+    TESTS
+        .replace(check, "")
+        .replace(", all answers reach their pose, and", ", and")
+        .replace("let values: [f64; VARIABLES] = core::array", "let values: [f64; ALL] = core::array")
+        .replace("(2.0 * unit - 1.0) * if", "if LEAST[v] == 0.0 {\n                    return 0.1 + unit;\n                }\n                (2.0 * unit - 1.0) * if")
+        .replace("forward(&values)", "arm(&DESCRIBED).forward_values(&values)")
+}
+
+/// What the file offers, and how candidates become solutions.
+fn api(program: &Program) -> String {
+    if program.goal == GoalType::default() {
+        return API.into();
+    }
+    let rest: Vec<String> = program.goal.at_rest().iter().map(|x| format!("{x:?}")).collect();
+    let forward = format!(
+        "    let mut all = [0.0; ALL];\n    all[..VARIABLES].copy_from_slice(values);\n    \
+         // Where the added joints turn nothing.\n    all[VARIABLES..].copy_from_slice(&[{}]);\n    arm(&DESCRIBED).forward_values(&all)",
+        rest.join(", ")
+    );
+    let keep = "        self.accepted += 1;
+        let new = !self.out.as_slice().iter().any(|other| self.arm.same(&values, other));
+        if new && self.out.len < CAPACITY {
+            self.out.values[self.out.len] = values;
+";
+    let keep_part = "        if (VARIABLES..ALL).any(|v| values[v] < LEAST[v] - 1e-9) {
+            self.misses += 1;
+            return;
+        }
+        self.accepted += 1;
+        let values = &values[..VARIABLES];
+        let new = !self.out.as_slice().iter().any(|other| self.arm.same(values, other));
+        if new && self.out.len < CAPACITY {
+            self.out.values[self.out.len].copy_from_slice(values);
+";
+    assert!(API.contains(keep), "the text above is part of the other");
+    API.replace("    arm(&DESCRIBED).forward_values(values)", &forward).replace(keep, keep_part).replace(
+        "steps: [[f64; 2]; VARIABLES], mut values: [f64; VARIABLES]",
+        "steps: [[f64; 2]; ALL], mut values: [f64; ALL]",
+    )
 }
 
 /// The tests that a file carries.
@@ -78,6 +126,14 @@ fn header(program: &Program, out: &mut String) {
          //! joint limits are not applied. Nothing allocates, and nothing panics.",
         program.class
     );
+    if program.goal != GoalType::default() {
+        let _ = writeln!(
+            out,
+            "//!\n//! Of a pose only a part is asked for, {}: {}.\n//! The rest of the pose may be anything.",
+            program.goal.name(),
+            program.goal.meaning()
+        );
+    }
     if program.snap > 0.0 {
         let _ = writeln!(
             out,
@@ -103,8 +159,22 @@ fn header(program: &Program, out: &mut String) {
 
 fn constants(program: &Program, chain: &TrueChain, out: &mut String) {
     let n = program.variables;
+    let own = program.chain_variables();
     let held: Vec<bool> = (0..n).map(|v| program.free.contains(&v)).collect();
-    let _ = writeln!(out, "/// Number of variables.\npub const VARIABLES: usize = {n};\n");
+    let _ = writeln!(out, "/// Number of variables.\npub const VARIABLES: usize = {own};\n");
+    if program.goal != GoalType::default() {
+        let least: Vec<String> = (0..own)
+            .map(|_| f64::NEG_INFINITY)
+            .chain(program.goal.least())
+            .map(|x| if x.is_finite() { format!("{x:?}") } else { "f64::NEG_INFINITY".into() })
+            .collect();
+        let _ = writeln!(
+            out,
+            "/// The same with the joints that stand for what the goal leaves open.\nconst ALL: usize = {n};\n\n\
+             /// Smallest values of a solution.\nconst LEAST: [f64; ALL] = [{}];\n",
+            least.join(", ")
+        );
+    }
     let _ = writeln!(
         out,
         "/// Variables whose value the caller gives.\npub const FREE: [usize; {}] = {:?};\n",

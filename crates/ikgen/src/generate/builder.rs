@@ -47,10 +47,11 @@ pub struct Turn<'b> {
 }
 
 impl Builder {
-    /// An empty program for a chain with this many variables, of which `free` are given.
-    pub fn new(variables: usize, free: Vec<usize>) -> Self {
+    /// An empty program for a chain with this many variables, those that the goal type adds included; `free` are given.
+    pub fn new(goal: crate::GoalType, variables: usize, free: Vec<usize>) -> Self {
         let program = Program {
             class: String::new(),
+            goal,
             variables,
             free,
             snap: 0.0,

@@ -9,6 +9,7 @@ use super::complete::completions;
 use super::facts::Facts;
 use super::problem::Problem;
 use super::strategies::{self, Strategy};
+use crate::GoalType;
 use crate::check;
 use crate::ir::Program;
 use crate::passes;
@@ -25,6 +26,8 @@ const EXACT: f64 = 1e-9;
 /// Choices of a compilation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
+    /// What the solver will be asked for.
+    pub goal: GoalType,
     /// Largest difference between the described chain and the ideal one that is solved: radians and metres. Smaller
     /// differences are tried first. Zero forbids snapping.
     pub tolerance: f64,
@@ -37,7 +40,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { tolerance: 2e-3, free: None, trial_poses: 60 }
+        Self { goal: GoalType::default(), tolerance: 2e-3, free: None, trial_poses: 60 }
     }
 }
 
@@ -65,6 +68,8 @@ pub struct Compiled {
     /// Everything that was tried, in order.
     pub trace: Vec<String>,
     chain: SerialChain,
+    /// With the joints that the goal type adds.
+    longer: SerialChain,
 }
 
 impl Compiled {
@@ -80,19 +85,25 @@ impl Compiled {
 
     /// The program as one Rust source file.
     pub fn rust_source(&self, options: &crate::backend::RustOptions) -> String {
-        let chain = crate::run::TrueChain::new(&self.chain).expect("the chain was small enough to compile");
+        let chain = crate::run::TrueChain::new(&self.longer).expect("the chain was small enough to compile");
         crate::backend::rust_source(&self.program, &chain, options)
     }
 
     /// The program as C header and source; `name` is the prefix of what they export and the stem of the files.
     pub fn c_source(&self, name: &str) -> Result<crate::backend::CSource, crate::backend::CError> {
-        let chain = crate::run::TrueChain::new(&self.chain).expect("the chain was small enough to compile");
+        let chain = crate::run::TrueChain::new(&self.longer).expect("the chain was small enough to compile");
         crate::backend::c_source(&self.program, &chain, name)
     }
 
     /// The chain that was compiled.
     pub fn chain(&self) -> &SerialChain {
         &self.chain
+    }
+
+    /// The same with the joints that the goal type adds: its pose at any values of all of them is a goal that its own first values
+    /// reach.
+    pub fn longer_chain(&self) -> &SerialChain {
+        &self.longer
     }
 }
 
@@ -102,7 +113,8 @@ impl Compiled {
 /// hold within a growing tolerance are taken as meant. A program is returned only when it solves all of its trial poses.
 pub fn compile(chain: &SerialChain, options: &Options) -> Result<Compiled, Refusal> {
     let mut trace = Vec::new();
-    let result = search(chain, options, &mut trace);
+    let longer = options.goal.extended(chain);
+    let result = search(chain, &longer, options, &mut trace);
     match result {
         Ok((program, class)) => Ok(Compiled {
             class,
@@ -111,12 +123,14 @@ pub fn compile(chain: &SerialChain, options: &Options) -> Result<Compiled, Refus
             program,
             trace,
             chain: chain.clone(),
+            longer,
         }),
         Err(reason) => Err(Refusal { reason, trace }),
     }
 }
 
 fn search(
+    own: &SerialChain,
     chain: &SerialChain,
     options: &Options,
     trace: &mut Vec<String>,
@@ -127,10 +141,15 @@ fn search(
     if chain.joints.len() > crate::kernel::chain::MAX_JOINTS {
         return Err(format!("{} joints are too many", chain.joints.len()));
     }
-    let letters = letters(chain);
+    let mut letters = letters(own);
+    let given = options.goal.given_variables(own.variables.len());
+    if options.goal != GoalType::default() {
+        letters += &format!(" {}", options.goal.name());
+    }
     let choices = match &options.free {
-        Some(free) => vec![checked(free, chain)?],
-        None => super::lock::choices(chain),
+        Some(free) => vec![[checked(free, own)?, given].concat()],
+        None if options.goal == GoalType::default() => super::lock::choices(chain),
+        None => super::lock::choices_beside(chain, own.variables.len(), &given),
     };
     let mut failure = None;
     let mut best: Option<Found> = None;
@@ -156,7 +175,8 @@ fn search(
     // Six joints that all turn are always solved in general.
     let special = chain.joints.iter().any(|j| j.motion == ChainMotion::Prismatic)
         || chain.joints.len() != chain.variables.len()
-        || chain.variables.len() < 6;
+        || chain.variables.len() < 6
+        || options.goal != GoalType::default();
     let needed = best.is_none() && special;
     let allowed = ladder.into_iter().filter(|t| needed && *t <= options.tolerance.max(1e-9));
     for tolerance in allowed.collect::<Vec<_>>() {
@@ -236,7 +256,7 @@ fn attempt(
                 "tolerance {tolerance:e}, free {free:?}, {name}{}: ",
                 if reversed { " from the tip" } else { "" }
             );
-            let builder = Builder::new(chain.variables.len(), free.to_vec());
+            let builder = Builder::new(options.goal, chain.variables.len(), free.to_vec());
             match write(&mut problem, &builder) {
                 Err(reason) => line += &reason,
                 Ok(how) => {
@@ -272,7 +292,7 @@ fn one_by_one(
 ) -> Result<Found, Option<String>> {
     let facts = Facts::coupled(chain, tolerance).ok_or(None)?;
     let line = format!("tolerance {tolerance:e}, free {free:?}, one by one: ");
-    let builder = Builder::new(chain.variables.len(), free.to_vec());
+    let builder = Builder::new(options.goal, chain.variables.len(), free.to_vec());
     let how = match super::one_by_one::write(&facts, free, &builder) {
         Ok(how) => how,
         Err(reason) => {
@@ -312,7 +332,7 @@ fn finished(
 /// the latter it did not solve, or why it is no good.
 fn trial(program: &Program, chain: &SerialChain, options: &Options) -> Result<usize, String> {
     program.validate().map_err(|e| format!("the program is not valid: {e}"))?;
-    let solver = Solver::new(program.clone(), chain).map_err(|e| e.to_string())?;
+    let solver = Solver::of_longer(program.clone(), chain).map_err(|e| e.to_string())?;
     let mut out = IkSolutions::new();
     let mut lost = 0;
     let slides = slides(chain);

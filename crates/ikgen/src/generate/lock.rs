@@ -24,7 +24,7 @@ pub(super) fn choices(chain: &SerialChain) -> Vec<Vec<usize>> {
             vec![given]
         }
         7 => {
-            let score: Vec<f64> = (0..7).map(|v| freedom_without(chain, v)).collect();
+            let score: Vec<f64> = (0..7).map(|v| freedom_without(chain, &[v])).collect();
             let best = score.iter().fold(0.0, |a: f64, b| a.max(*b));
             // A joint whose loss costs most of the freedom (an elbow) is a poor one to give, though not a forbidden one.
             let (mut good, poor): (Vec<usize>, Vec<usize>) =
@@ -36,21 +36,51 @@ pub(super) fn choices(chain: &SerialChain) -> Vec<Vec<usize>> {
     }
 }
 
+/// As [`choices`], for a chain whose first `own` variables alone may be chosen; `given` ones are given in any case.
+///
+/// As many are chosen as there are more than ways to move: those farthest from the base first that leave these ways, and
+/// move well.
+pub(super) fn choices_beside(chain: &SerialChain, own: usize, given: &[usize]) -> Vec<Vec<usize>> {
+    const MOST: usize = 12;
+    let ways = freedom(chain, given);
+    let surplus = chain.variables.len() - given.len() - ways;
+    let mut good: Vec<(f64, Vec<usize>)> = Vec::new();
+    for chosen in subsets(own, surplus) {
+        let without = [&chosen[..], given].concat();
+        if freedom(chain, &without) == ways {
+            good.push((freedom_without(chain, &without), without));
+        }
+    }
+    let best = good.iter().fold(0.0, |a: f64, (score, _)| a.max(*score));
+    good.retain(|(score, _)| *score >= 0.2 * best);
+    good.into_iter().map(|(_, without)| without).take(MOST).collect()
+}
+
+/// Sets of `size` of the numbers below `count`, each ascending, those of the largest numbers first.
+fn subsets(count: usize, size: usize) -> Vec<Vec<usize>> {
+    if size == 0 {
+        return vec![Vec::new()];
+    }
+    let last = (size - 1..count).rev();
+    let with = |last: usize| subsets(last, size - 1).into_iter().map(move |rest| [rest, vec![last]].concat());
+    last.flat_map(with).collect()
+}
+
 /// In how many ways a chain moves at a random place without these variables.
-fn freedom(chain: &SerialChain, without: &[usize]) -> usize {
+pub(super) fn freedom(chain: &SerialChain, without: &[usize]) -> usize {
     let mut rng = Seed::new(0).split("ikgen freedom").rng();
     let columns = jacobian(chain, &crate::report::poses::random(chain, &mut rng));
     let left: Vec<usize> = (0..columns.len()).filter(|v| !without.contains(v)).collect();
     nalgebra::DMatrix::from_fn(6, left.len(), |i, j| columns[left[j]][i]).rank(1e-3)
 }
 
-/// Mean volume of the Jacobian (per radian and metre) without one variable.
-fn freedom_without(chain: &SerialChain, variable: usize) -> f64 {
+/// Mean volume of the Jacobian (per radian and metre) without some variables; zero unless six are left.
+fn freedom_without(chain: &SerialChain, without: &[usize]) -> f64 {
     let mut rng = Seed::new(0).split("ikgen lock").rng();
     let mut sum = 0.0;
     for _ in 0..200 {
         let values = crate::report::poses::random(chain, &mut rng);
-        sum += jacobian_determinant(chain, &values, &[variable]).unwrap_or(0.0).abs();
+        sum += jacobian_determinant(chain, &values, without).unwrap_or(0.0).abs();
     }
     sum
 }

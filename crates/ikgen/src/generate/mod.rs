@@ -6,8 +6,10 @@ mod complete;
 pub mod equations;
 pub mod facts;
 pub(crate) mod lock;
+mod natural;
 mod one_by_one;
 pub mod problem;
 pub mod strategies;
 
 pub use compile::{Compiled, Options, Refusal, compile};
+pub use natural::natural;

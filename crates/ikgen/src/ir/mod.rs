@@ -184,7 +184,9 @@ pub type Block = Vec<Stmt>;
 pub struct Program {
     /// What kind of chain this is and how it is solved, in words.
     pub class: String,
-    /// Number of variables of the chain.
+    /// What is asked for.
+    pub goal: crate::GoalType,
+    /// Number of variables: those of the chain, then those of the joints that the goal type adds.
     pub variables: usize,
     /// Variables whose value the caller gives, ascending.
     pub free: Vec<usize>,
@@ -229,6 +231,11 @@ impl Program {
     /// Checks that every name is bound before use, counts agree and numbers are finite.
     pub fn validate(&self) -> Result<(), Invalid> {
         validate::program(self)
+    }
+
+    /// Number of variables of the chain itself: the length of a solution.
+    pub fn chain_variables(&self) -> usize {
+        self.variables.saturating_sub(self.goal.added_joints())
     }
 
     /// The name of a variable.

@@ -41,6 +41,7 @@ struct Reader {
 pub(super) fn program(text: &str) -> Result<Program, TextError> {
     let program = Program {
         class: String::new(),
+        goal: crate::GoalType::default(),
         variables: 0,
         free: Vec::new(),
         snap: 0.0,
@@ -59,6 +60,14 @@ pub(super) fn program(text: &str) -> Result<Program, TextError> {
         Token::Text(class) => class,
         _ => return Err(r.error("expected the class in quotes")),
     };
+    if *r.peek() == Token::Word("goal".into()) {
+        r.next();
+        r.program.goal = match r.next() {
+            Token::Word(name) => crate::GoalType::from_name(&name),
+            _ => None,
+        }
+        .ok_or_else(|| r.error("expected a type of goal"))?;
+    }
     r.word("variables")?;
     r.program.variables = r.count()?;
     r.word("free")?;

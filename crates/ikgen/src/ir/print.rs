@@ -9,6 +9,9 @@ pub(super) fn program(p: &Program) -> String {
     let free: Vec<String> = p.free.iter().map(usize::to_string).collect();
     let _ = writeln!(out, "ikgen 1");
     let _ = writeln!(out, "class \"{}\"", p.class);
+    if p.goal != crate::GoalType::default() {
+        let _ = writeln!(out, "goal {}", p.goal.name());
+    }
     let _ = writeln!(out, "variables {}", p.variables);
     let _ = writeln!(out, "free [{}]", free.join(" "));
     let _ = writeln!(out, "snap {:?}", p.snap);

@@ -33,7 +33,10 @@ pub enum Invalid {
 pub(super) fn program(p: &Program) -> Result<(), Invalid> {
     let in_order = p.free.windows(2).all(|w| w[0] < w[1]) && p.free.iter().all(|v| *v < p.variables);
     for (ok, what) in [
-        (p.variables > 0 && p.variables <= crate::kernel::chain::MAX_JOINTS, "the number of variables"),
+        (
+            p.chain_variables() > 0 && p.variables <= crate::kernel::chain::MAX_JOINTS,
+            "the number of variables",
+        ),
         (in_order && p.free.len() < 10, "the list of free variables"),
         (p.snap.is_finite() && p.snap >= 0.0, "snap"),
         (p.slack.is_finite() && p.slack >= 0.0, "slack"),

@@ -3,12 +3,13 @@
 pub mod poses;
 
 use robotc_core::Seed;
-use robotc_core::ik::{IkSolutions, InverseKinematics};
+use robotc_core::ik::{IkSolutions, InverseKinematics as _};
 use robotc_core::model::SerialChain;
 use serde::Serialize;
 
 use crate::check;
 use crate::generate::{Compiled, Refusal};
+use crate::{GoalType, Solver};
 
 /// Largest error of a right answer: metres, and Frobenius norm of the rotation difference.
 pub const TOLERANCE: f64 = 1e-9;
@@ -60,7 +61,7 @@ pub struct SetReport {
 pub struct Report {
     /// Class of the chain and how it is solved.
     pub class: String,
-    /// Parameterisation: `transform6d`.
+    /// What is asked for: the name of a [`GoalType`](crate::GoalType).
     #[serde(rename = "type")]
     pub kind: String,
     /// Names of the variables that the caller gives.
@@ -81,10 +82,10 @@ pub struct Report {
 
 impl Report {
     /// The report of a chain that was not solved.
-    pub fn refused(refusal: &Refusal, generation_s: f64) -> Self {
+    pub fn refused(refusal: &Refusal, goal: GoalType, generation_s: f64) -> Self {
         Self {
             class: String::new(),
-            kind: "transform6d".into(),
+            kind: goal.name().into(),
             free_joints: Vec::new(),
             snap_max: 0.0,
             generation_s,
@@ -113,7 +114,7 @@ pub fn prove(
     let chain = compiled.chain();
     let solver = compiled.solver();
     let seed = Seed::new(options.seed).split("ikgen proof");
-    let sets: Vec<SetReport> = poses::sets(chain, &compiled.free, options.poses, seed)
+    let sets: Vec<SetReport> = poses::sets(compiled.longer_chain(), &compiled.free, options.poses, seed)
         .iter()
         .map(|set| prove_set(chain, &solver, set, now))
         .collect();
@@ -128,8 +129,12 @@ pub fn prove(
     };
     Report {
         class: compiled.class.clone(),
-        kind: "transform6d".into(),
-        free_joints: compiled.free.iter().map(|v| chain.variables[*v].name.clone()).collect(),
+        kind: compiled.program.goal.name().into(),
+        free_joints: compiled
+            .free
+            .iter()
+            .map(|v| compiled.longer_chain().variables[*v].name.clone())
+            .collect(),
         snap_max: compiled.snap,
         generation_s,
         source_bytes: compiled.rust_source(&crate::backend::RustOptions::default()).len(),
@@ -139,13 +144,16 @@ pub fn prove(
     }
 }
 
-/// Tries any solver of a chain on one set of poses.
+/// Tries a solver of a chain on one set of poses; the joint vectors of the set are those of the chain with the joints that the goal
+/// type adds.
 pub fn prove_set(
     chain: &SerialChain,
-    solver: &dyn InverseKinematics,
+    solver: &Solver,
     set: &poses::PoseSet,
     now: &dyn Fn() -> f64,
 ) -> SetReport {
+    let goal = solver.program().goal;
+    let longer = goal.extended(chain);
     let slides = poses::slides(chain);
     let mut out = IkSolutions::new();
     let mut report = SetReport {
@@ -162,7 +170,7 @@ pub fn prove_set(
     let mut times = Vec::with_capacity(set.vectors.len());
     let mut solutions = 0;
     for vector in &set.vectors {
-        let base_from_tip = chain.forward(vector);
+        let base_from_tip = longer.forward(vector);
         let free: Vec<f64> = solver.free_variables().iter().map(|v| vector[*v]).collect();
         let start = now();
         solver.solve(&base_from_tip, &free, &mut out);
@@ -170,7 +178,7 @@ pub fn prove_set(
         solutions += out.len();
         let mut right = false;
         for values in out.iter() {
-            let error = check::distance(chain, values, &base_from_tip);
+            let error = check::goal_distance(goal, chain, values, &free, &base_from_tip);
             report.max_error = report.max_error.max(error);
             if error <= TOLERANCE {
                 right = true;

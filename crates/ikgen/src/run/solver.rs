@@ -8,7 +8,7 @@ use super::lanes::{self, LANES};
 use super::{Bytecode, Candidate, TooLarge, TrueChain, Verdict, frame, interpreter};
 use crate::ir::{Program, TextError};
 use crate::kernel::candidate::{MOST_MISSES, WIDER, is_exact};
-use crate::kernel::chain::{Frame, MAX_JOINTS};
+use crate::kernel::chain::{Frame, MAX_JOINTS, TOLERANCE};
 
 /// What runs the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -54,11 +54,19 @@ pub struct Solver {
     engine: Engine,
     held: [bool; MAX_JOINTS],
     ranges: Vec<VariableRange>,
+    /// Smallest values of the joints that the goal type adds.
+    least: [f64; MAX_JOINTS],
 }
 
 impl Solver {
     /// A solver from a program and the chain it is to run on.
     pub fn new(program: Program, chain: &SerialChain) -> Result<Self, LoadError> {
+        let longer = program.goal.extended(chain);
+        Self::of_longer(program, &longer)
+    }
+
+    /// As [`new`](Self::new), of a chain with the joints that the goal type adds.
+    pub(crate) fn of_longer(program: Program, chain: &SerialChain) -> Result<Self, LoadError> {
         let true_chain = TrueChain::new(chain).ok_or(LoadError::Joints(chain.joints.len()))?;
         if true_chain.variables != program.variables {
             let (program, chain) = (program.variables, true_chain.variables);
@@ -68,13 +76,17 @@ impl Solver {
         for v in &program.free {
             held[*v] = true;
         }
+        let joints = program.chain_variables();
+        let mut least = [f64::NEG_INFINITY; MAX_JOINTS];
+        least[joints..program.variables].copy_from_slice(&program.goal.least());
         Ok(Self {
             code: Bytecode::for_chain(&program, &true_chain)?,
             program,
             chain: true_chain,
             engine: Engine::Bytecode,
             held,
-            ranges: VariableRange::of(chain),
+            ranges: VariableRange::of(chain)[..joints].to_vec(),
+            least,
         })
     }
 
@@ -114,7 +126,7 @@ impl Solver {
         out: &mut IkSolutions,
     ) -> Result<(), PreferenceError> {
         let ranges = preferences.ranges(&self.ranges)?;
-        out.reset(self.program.variables);
+        out.reset(self.ranges.len());
         let mut all = IkSolutions::new();
         self.solve_until(base_from_tip, free, &mut all, &mut |solution| {
             preferences.offer(&ranges, solution, out);
@@ -133,7 +145,7 @@ impl Solver {
         enough: &mut impl FnMut(&[f64]) -> bool,
     ) {
         assert_eq!(free.len(), self.program.free.len(), "one value for each free variable");
-        out.reset(self.program.variables);
+        out.reset(self.ranges.len());
         let frame = frame(base_from_tip);
         let mut numbers = frame.position.iter().chain(frame.rotation.iter().flatten()).chain(free);
         if !numbers.all(|x| x.is_finite()) {
@@ -147,6 +159,11 @@ impl Solver {
         }
     }
 
+    /// Whether the joints that the goal type adds have values that are meant.
+    fn is_in_front(&self, values: &[f64]) -> bool {
+        (self.ranges.len()..values.len()).all(|v| values[v] >= self.least[v] - TOLERANCE)
+    }
+
     fn attempt(
         &self,
         base_from_tip: &Frame,
@@ -155,16 +172,17 @@ impl Solver {
         out: &mut IkSolutions,
         enough: &mut impl FnMut(&[f64]) -> bool,
     ) -> usize {
-        let n = self.program.variables;
-        let arm = self.chain.arm(&self.held[..n]);
+        let (n, all) = (self.ranges.len(), self.program.variables);
+        let arm = self.chain.arm(&self.held[..all]);
         let misses = std::cell::Cell::new(0);
         let looks = || misses.get() < MOST_MISSES;
         // Keeps a candidate if it is right and new.
         let mut keep = |right: bool, values: &[f64]| {
-            if !right {
+            if !right || !self.is_in_front(values) {
                 misses.set(misses.get() + 1);
                 return Verdict::Wrong;
             }
+            let values = &values[..n];
             if out.iter().any(|other| arm.same(values, other)) {
                 return Verdict::Accepted;
             }
@@ -176,8 +194,8 @@ impl Solver {
                 let mut values = candidate.values;
                 let right = looks()
                     && (is_exact(candidate.misses)
-                        || arm.settle(base_from_tip, &candidate.steps[..n], &mut values[..n]));
-                keep(right, &values[..n])
+                        || arm.settle(base_from_tip, &candidate.steps[..all], &mut values[..all]));
+                keep(right, &values[..all])
             }),
             Engine::Interpreter => {
                 interpreter::run(&self.program, base_from_tip, free, slack, &mut |steps| {
@@ -185,8 +203,8 @@ impl Solver {
                     for (variable, value) in self.program.free.iter().zip(free) {
                         values[*variable] = *value;
                     }
-                    let right = looks() && arm.settle(base_from_tip, steps, &mut values[..n]);
-                    keep(right, &values[..n])
+                    let right = looks() && arm.settle(base_from_tip, steps, &mut values[..all]);
+                    keep(right, &values[..all])
                 })
             }
         }
@@ -225,12 +243,12 @@ impl Solver {
     ///
     /// `free` holds the values of the free variables of one pose after the other.
     pub fn solve_batch(&self, base_from_tip: &[Pose], free: &[f64], out: &mut Batch) {
-        let (n, given) = (self.program.variables, self.program.free.len());
+        let (n, all, given) = (self.ranges.len(), self.program.variables, self.program.free.len());
         assert_eq!(free.len(), given * base_from_tip.len(), "one value for each free variable of each pose");
         out.width = n;
         out.values.clear();
         out.ends.clear();
-        let arm = self.chain.arm(&self.held[..n]);
+        let arm = self.chain.arm(&self.held[..all]);
         let mut found: [IkSolutions; LANES] = Default::default();
         let mut alone = IkSolutions::new();
         // What the polish has to see anyway gains nothing.
@@ -238,6 +256,10 @@ impl Solver {
         let found_cell = std::cell::RefCell::new(&mut found);
         let mut run = lanes::Run::new(&self.code, self.program.slack, |lane, values: &[f64]| {
             let found = &mut found_cell.borrow_mut()[lane];
+            if !self.is_in_front(values) {
+                return;
+            }
+            let values = &values[..n];
             if !found.iter().any(|other| arm.same(values, other)) {
                 found.push(values);
             }
@@ -264,7 +286,7 @@ impl Solver {
 
 impl InverseKinematics for Solver {
     fn variables(&self) -> usize {
-        self.program.variables
+        self.ranges.len()
     }
 
     fn free_variables(&self) -> &[usize] {

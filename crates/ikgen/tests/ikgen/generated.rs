@@ -13,7 +13,7 @@ use robotc_ikgen::report::poses;
 use robotc_ikgen::run::Engine;
 use robotc_ikgen::{Compiled, Options, Solver, compile};
 
-use crate::{arms, golden};
+use crate::{arms, goals, golden};
 
 /// Where solutions fall together a last place of difference moves them by the square root of it.
 const NEAR: f64 = 1e-6;
@@ -24,8 +24,9 @@ type Answers = Vec<Vec<f64>>;
 #[test]
 fn every_back_end_gives_the_same_solutions() {
     let folder = tempfile::tempdir().unwrap();
-    let compiled: Vec<Compiled> =
+    let mut compiled: Vec<Compiled> =
         arms::all().iter().map(|c| compile(c, &Options::default()).unwrap()).collect();
+    compiled.extend(goals::one_of_each_kind());
     let (corpus, expected) = corpus(&compiled);
     std::fs::write(folder.path().join("corpus"), &corpus).unwrap();
 
@@ -51,7 +52,7 @@ fn every_back_end_gives_the_same_solutions() {
 fn corpus(compiled: &[Compiled]) -> (String, Vec<Answers>) {
     let (mut text, mut expected) = (String::new(), Vec::new());
     for c in compiled {
-        let (chain, solver) = (c.chain(), c.solver());
+        let (chain, solver) = (c.longer_chain(), c.solver());
         let reference = c.solver().with_engine(Engine::Interpreter);
         for set in poses::sets(chain, &c.free, 12, Seed::new(9)) {
             for vector in &set.vectors {

@@ -5,6 +5,7 @@
 mod arms;
 mod classes;
 mod generated;
+mod goals;
 mod golden;
 mod language;
 mod preferences;

@@ -108,6 +108,7 @@ mod build {
                 tolerance: parameters.tolerance,
                 free: inputs.free.clone(),
                 trial_poses: parameters.trial_poses as usize,
+                ..Options::default()
             };
             let compiled = robotc_ikgen::compile(&chain, &options);
             compiled.map(|c| c.program).map_err(|refusal| BuildError::Impossible(refusal.reason))

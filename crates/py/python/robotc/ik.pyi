@@ -9,10 +9,13 @@ class GeneratedSolver:
     def kind(self) -> str:
         """Class of the chain and how it is solved."""
     @property
+    def type(self) -> str:
+        """What it is asked for, such as `transform6d`."""
+    @property
     def joint_names(self) -> list[str]: ...
     @property
     def free_joints(self) -> list[str]:
-        """Joints whose value `solve` is given."""
+        """Joints whose value `solve` is given, then what the type has given besides."""
     def solve(
         self,
         pose: Array,
@@ -42,11 +45,14 @@ def generate(
     tip: str,
     free: Sequence[str] | None = None,
     tolerance: float | None = None,
+    type: str = "transform6d",
     *,
     packages: Mapping[str, Path] | None = None,
     arguments: Mapping[str, str] | None = None,
 ) -> GeneratedSolver:
     """Compiles the chain between two links of a URDF or xacro file; `CompileError` says why it cannot be solved.
 
-    `packages` says where ROS packages are; `arguments` are values for the arguments of a xacro file.
+    `type` says what of a pose is asked for: `transform6d`, `translation3d`, `translationdirection5d` and so on as listed in the guide of
+    inverse kinematics, or `auto`: what the joints suggest. `packages` says where ROS packages are; `arguments` are values for the arguments
+    of a xacro file.
     """

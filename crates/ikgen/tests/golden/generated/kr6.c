@@ -11,6 +11,7 @@
 /* Compile without contraction of products and sums (gcc and clang: -ffp-contract=off) for the same bits everywhere;
    with IK_FREESTANDING nothing of the C library is called. */
 
+#define IK_JOINTS KR6_VARIABLES
 #define IK_VARIABLES KR6_VARIABLES
 #define IK_LINKS KR6_LINKS
 #define IK_CAPACITY KR6_CAPACITY
@@ -442,14 +443,14 @@ static void ik_offer(ik_sink *sink, double steps[IK_VARIABLES][2], double values
     sink->accepted++;
     for (k = 0; k < sink->out->count; k++) {
         const double *other = sink->out->values[k];
-        for (i = 0; i < IK_VARIABLES; i++) {
+        for (i = 0; i < IK_JOINTS; i++) {
             double gap = ik_abs(values[i] - other[i]);
             if (gap >= 1e-7 && (ik_slides[i] || ik_abs(gap - 6.283185307179586) >= 1e-7)) break;
         }
-        if (i == IK_VARIABLES) return;
+        if (i == IK_JOINTS) return;
     }
     if (sink->out->count < IK_CAPACITY) {
-        for (i = 0; i < IK_VARIABLES; i++) sink->out->values[sink->out->count][i] = values[i];
+        for (i = 0; i < IK_JOINTS; i++) sink->out->values[sink->out->count][i] = values[i];
         sink->out->count++;
     }
 }
