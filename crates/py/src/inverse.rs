@@ -76,6 +76,22 @@ impl InverseKinematics {
         solving::solve(py, &self.solver, &self.free_joints(), &pose, &free, wanted)
     }
 
+    /// Values of a free joint for which the pose has solutions within limits.
+    #[pyo3(
+        signature = (pose, joint = None, free = Vec::new(), limits = WantedLimits::Described(true)),
+        text_signature = "(self, pose, joint=None, free=(), limits=True)"
+    )]
+    fn free_intervals<'py>(
+        &self,
+        py: Python<'py>,
+        pose: PyReadonlyArray2<'py, f64>,
+        joint: Option<&str>,
+        free: Vec<f64>,
+        limits: WantedLimits,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, f64)> {
+        solving::free_intervals(py, &self.solver, &self.free_joints(), &pose, joint, free, limits)
+    }
+
     /// `base_from_tip` at these joint values, as a 4 x 4 matrix.
     fn fk<'py>(&self, py: Python<'py>, joints: Vec<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         solving::forward(py, &self.chain, &joints)

@@ -96,7 +96,7 @@ pub(crate) fn jacobian_determinant(chain: &SerialChain, values: &[f64], given: &
 }
 
 /// Columns of the Jacobian: velocity of the tip, then angular velocity, in the base frame.
-fn jacobian(chain: &SerialChain, values: &[f64]) -> Vec<[f64; 6]> {
+pub(super) fn jacobian(chain: &SerialChain, values: &[f64]) -> Vec<[f64; 6]> {
     let tip = chain.forward(values).translation.vector;
     let mut columns = vec![[0.0; 6]; chain.variables.len()];
     let mut at = robotc_core::Pose::identity();

@@ -4,10 +4,12 @@
 pub mod bytecode;
 pub mod interpreter;
 mod lanes;
+mod redundancy;
 mod solver;
 mod true_chain;
 
 pub use bytecode::{Bytecode, Candidate, TooLarge};
+pub use redundancy::{Completeness, FreeIntervals, RedundancyOptions};
 pub use solver::{Batch, Engine, LoadError, Solver};
 pub use true_chain::TrueChain;
 

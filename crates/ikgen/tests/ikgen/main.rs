@@ -11,3 +11,4 @@ mod language;
 mod preferences;
 mod properties;
 mod real_arms;
+mod redundancy;

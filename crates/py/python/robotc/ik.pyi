@@ -34,6 +34,18 @@ class GeneratedSolver:
         `all_aliases` every one. `near` puts solutions nearest to it first, in a distance whose terms are weighted by `weights`.
         No more than `max_solutions` are returned; without `near` the search stops when they are found.
         """
+    def free_intervals(
+        self,
+        pose: Array,
+        joint: str | None = None,
+        free: Sequence[float] = (),
+        limits: bool | Sequence[Sequence[float]] | Array = True,
+    ) -> tuple[Array, float]:
+        """Values of a free joint, by default the first, for which `base_from_tip` has solutions within limits.
+
+        Intervals, shape (intervals, 2), ascending, and how wide what was missed between them can be. `free` gives the values of the free
+        joints when there are several.
+        """
     def fk(self, joints: Sequence[float]) -> Array:
         """`base_from_tip`, shape (4, 4)."""
     def write(self, path: Path) -> None:

@@ -1,0 +1,347 @@
+//! The values of a free variable for which a pose has solutions within limits: intervals, not a grid.
+//!
+//! The range of the variable is cut into cells. On each the solution program is run with intervals in place of numbers: a cell on which
+//! one branch keeps to the limits belongs to the set, one on which every branch leaves them or has lost its roots does not, and any
+//! other is halved. What is left in the end are cells narrower than [`RedundancyOptions::width`] around the ends of the set: where a joint
+//! comes to a limit, and where two branches fold into each other. There the solver itself finds the place. So nothing wider than that
+//! can have been missed. (The free joint of section 4.1 of Diankov's thesis, stepped there.)
+//!
+//! The general solver of six joints is not made of equations with one unknown: with it only points can be tried, and the result says so.
+
+mod bounds;
+mod interval;
+mod trigonometric;
+
+use std::f64::consts::PI;
+
+use robotc_core::Pose;
+use robotc_core::ik::{IkSolutions, PreferenceError, Preferences, VariableRange};
+use robotc_core::model::ChainMotion;
+use robotc_core::rng::Rng;
+
+use self::interval::Interval;
+use super::{Solver, frame};
+use crate::ir::RootKind;
+
+/// Points that are tried where intervals say nothing.
+const POINTS: usize = 400;
+
+/// Choices of [`Solver::free_intervals`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct RedundancyOptions {
+    /// Cells of the free value are cut down to this, radians or metres.
+    pub width: f64,
+    /// Cells that are looked at, at most.
+    pub cells: usize,
+}
+
+impl Default for RedundancyOptions {
+    fn default() -> Self {
+        Self { width: 1e-6, cells: 20_000 }
+    }
+}
+
+/// What is known of intervals of the free value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Completeness {
+    /// Every value outside of them has no solution, but for cells narrower than this that hold an end of an interval or a singular
+    /// pose.
+    ToWidth(f64),
+    /// Found by trying points this far apart: a narrower interval, or a narrower gap, may have been missed.
+    Sampled(f64),
+}
+
+/// Values of a free variable for which a pose has solutions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeIntervals {
+    /// Lower and upper ends, ascending, apart from each other; within the limits of the variable, or in [-pi, pi] when it turns without
+    /// end.
+    pub intervals: Vec<[f64; 2]>,
+    /// What is known of the rest.
+    pub completeness: Completeness,
+    range: VariableRange,
+}
+
+impl FreeIntervals {
+    /// Whether no value has a solution.
+    pub fn is_empty(&self) -> bool {
+        self.intervals.is_empty()
+    }
+
+    /// All values together, radians or metres.
+    pub fn measure(&self) -> f64 {
+        self.intervals.iter().map(|[low, high]| high - low).sum()
+    }
+
+    /// Whether a value is in one of them.
+    pub fn contains(&self, value: f64) -> bool {
+        self.intervals.iter().any(|[low, high]| *low <= value && value <= *high)
+    }
+
+    /// The value in one of them that is nearest to `seed`; the short way round when the variable turns without end.
+    pub fn nearest(&self, seed: f64) -> Option<f64> {
+        let seed = self.range.nearest(seed, 0.0).unwrap_or(seed);
+        let near = |[low, high]: &[f64; 2]| {
+            if *low <= seed && seed <= *high {
+                seed
+            } else if self.range.distance(*low, seed) <= self.range.distance(*high, seed) {
+                *low
+            } else {
+                *high
+            }
+        };
+        let all = self.intervals.iter().map(near);
+        all.min_by(|a, b| self.range.distance(*a, seed).total_cmp(&self.range.distance(*b, seed)))
+    }
+
+    /// `count` values spread evenly over their lengths, ascending.
+    pub fn spread(&self, count: usize) -> Vec<f64> {
+        let step = self.measure() / count.max(1) as f64;
+        (0..count).filter_map(|k| self.at(step * (k as f64 + 0.5))).collect()
+    }
+
+    /// A value drawn evenly from them.
+    pub fn draw(&self, rng: &mut Rng) -> Option<f64> {
+        let part = rng.unit();
+        self.at(part * self.measure())
+    }
+
+    /// The value up to which they measure `length`.
+    fn at(&self, mut length: f64) -> Option<f64> {
+        for [low, high] in &self.intervals {
+            if length <= high - low {
+                return Some(low + length);
+            }
+            length -= high - low;
+        }
+        self.intervals.last().map(|[_, high]| *high)
+    }
+}
+
+/// What a cell is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum State {
+    Inside,
+    Outside,
+    Unknown,
+}
+
+struct Cell {
+    low: f64,
+    high: f64,
+    state: State,
+}
+
+impl Solver {
+    /// The values of the `k`-th free variable for which the pose has solutions that keep the limits of `preferences`; the other free
+    /// variables have the values in `free`.
+    ///
+    /// Panics unless `free` has a value for each free variable and `k` is one of them.
+    pub fn free_intervals(
+        &self,
+        base_from_tip: &Pose,
+        free: &[f64],
+        k: usize,
+        preferences: &Preferences,
+        options: &RedundancyOptions,
+    ) -> Result<FreeIntervals, PreferenceError> {
+        let program = self.program();
+        assert!(k < free.len() && free.len() == program.free.len(), "one value for each free variable");
+        let ranges = preferences.ranges(self.ranges())?;
+        if !(options.width > 0.0) {
+            return Err(PreferenceError::Value("width"));
+        }
+        let range = ranges.get(program.free[k]).copied().unwrap_or(VariableRange {
+            motion: ChainMotion::Prismatic,
+            lower: -1.0,
+            upper: 1.0,
+        });
+        let (low, high) = match range.motion {
+            _ if range.is_continuous() => (-PI, PI),
+            ChainMotion::Revolute => (range.lower.max(-2.0 * PI), range.upper.min(2.0 * PI)),
+            ChainMotion::Prismatic => (range.lower.max(-100.0), range.upper.min(100.0)),
+        };
+        let search = Search {
+            solver: self,
+            base_from_tip,
+            free,
+            k,
+            ranges: &ranges,
+            first: Preferences { max_solutions: 1, near: None, ..preferences.clone() },
+        };
+        let sampled = program.uses(RootKind::Six);
+        let width = options.width.max(100.0 * program.slack);
+        let cells =
+            if sampled { search.points(low, high) } else { search.cells(low, high, width, options.cells) };
+        let unknown =
+            cells.iter().filter(|c| c.state == State::Unknown).map(|c| c.high - c.low).fold(0.0, f64::max);
+        let step = (high - low) / POINTS as f64;
+        let completeness = if sampled || unknown > step {
+            Completeness::Sampled(step)
+        } else {
+            Completeness::ToWidth(unknown.max(width))
+        };
+        Ok(FreeIntervals { intervals: search.intervals(&cells), completeness, range })
+    }
+}
+
+struct Search<'a> {
+    solver: &'a Solver,
+    base_from_tip: &'a Pose,
+    free: &'a [f64],
+    k: usize,
+    ranges: &'a [VariableRange],
+    first: Preferences,
+}
+
+impl Search<'_> {
+    /// Whether there is a solution at a value.
+    fn holds(&self, value: f64) -> bool {
+        let mut free = self.free.to_vec();
+        free[self.k] = value;
+        let mut out = IkSolutions::new();
+        let done = self.solver.solve_preferred(self.base_from_tip, &free, &self.first, &mut out);
+        done.is_ok() && !out.is_empty()
+    }
+
+    /// What can be said of all values of a cell.
+    fn state(&self, low: f64, high: f64) -> State {
+        let program = self.solver.program();
+        let mut free: Vec<Interval> = self.free.iter().map(|x| Interval::point(*x)).collect();
+        free[self.k] = Interval { low, high };
+        let Ok(branches) = bounds::branches(program, &frame(self.base_from_tip), &free, program.slack) else {
+            return State::Unknown;
+        };
+        let mut state = State::Outside;
+        for branch in &branches {
+            match self.keeps_limits(branch, 100.0 * program.slack) {
+                // A program may offer what is none: the solver has the last word.
+                Some(true) if self.holds(0.5 * (low + high)) => return State::Inside,
+                Some(false) => {}
+                _ => state = State::Unknown,
+            }
+        }
+        state
+    }
+
+    /// Whether all solutions of a branch keep the limits, or none does.
+    fn keeps_limits(&self, branch: &[Interval], slack: f64) -> Option<bool> {
+        let mut all = Some(true);
+        for (v, (range, value)) in self.ranges.iter().zip(branch).enumerate() {
+            if self.solver.program().free.contains(&v) || range.is_continuous() {
+                continue;
+            }
+            // The slack of limits, and rounding of the bounds.
+            let value = value.wider(slack + 1e-12);
+            let turns = if range.motion == ChainMotion::Revolute { -3..=3 } else { 0..=0 };
+            let aliases = turns.map(|t| value.plus(Interval::point(2.0 * PI * f64::from(t))));
+            let mut here = Some(false);
+            for alias in aliases {
+                if range.lower <= alias.low && alias.high <= range.upper {
+                    here = Some(true);
+                    break;
+                }
+                if alias.high >= range.lower - 2e-9 && alias.low <= range.upper + 2e-9 {
+                    here = None;
+                }
+            }
+            match here {
+                Some(false) => return Some(false),
+                Some(true) => {}
+                None => all = None,
+            }
+        }
+        all
+    }
+
+    /// Cells of known state, and those of unknown state that are narrower than `width` or for which `most` did not suffice.
+    fn cells(&self, low: f64, high: f64, width: f64, most: usize) -> Vec<Cell> {
+        let first = 64;
+        let step = (high - low) / first as f64;
+        let mut open: Vec<[f64; 2]> = (0..first)
+            .rev()
+            .map(|k| [low + step * k as f64, if k + 1 == first { high } else { low + step * (k + 1) as f64 }])
+            .collect();
+        let mut cells: Vec<Cell> = Vec::new();
+        let mut looked = 0;
+        while let Some([low, high]) = open.pop() {
+            looked += 1;
+            let state = self.state(low, high);
+            if state == State::Unknown && high - low > width && looked < most {
+                let middle = 0.5 * (low + high);
+                open.push([middle, high]);
+                open.push([low, middle]);
+                continue;
+            }
+            match cells.last_mut() {
+                Some(last) if last.state == state => last.high = high,
+                _ => cells.push(Cell { low, high, state }),
+            }
+        }
+        cells
+    }
+
+    /// Cells between points at which the solver was asked.
+    fn points(&self, low: f64, high: f64) -> Vec<Cell> {
+        let at = |k: usize| if k == POINTS { high } else { low + (high - low) / POINTS as f64 * k as f64 };
+        let mut cells: Vec<Cell> = Vec::new();
+        let mut before = self.holds(low);
+        for k in 0..POINTS {
+            let after = self.holds(at(k + 1));
+            let state = match (before, after) {
+                (true, true) => State::Inside,
+                (false, false) => State::Outside,
+                _ => State::Unknown,
+            };
+            before = after;
+            match cells.last_mut() {
+                Some(last) if last.state == state && state != State::Unknown => last.high = at(k + 1),
+                _ => cells.push(Cell { low: at(k), high: at(k + 1), state }),
+            }
+        }
+        cells
+    }
+
+    /// The intervals that cells make; inside of unknown ones the solver is asked.
+    fn intervals(&self, cells: &[Cell]) -> Vec<[f64; 2]> {
+        let whole = cells.last().map_or(0.0, |c| c.high) - cells.first().map_or(0.0, |c| c.low);
+        let step = (whole / POINTS as f64).max(f64::MIN_POSITIVE);
+        let mut found: Vec<[f64; 2]> = Vec::new();
+        let mut add = |low: f64, high: f64| match found.last_mut() {
+            Some(last) if last[1] >= low => last[1] = last[1].max(high),
+            _ => found.push([low, high]),
+        };
+        for cell in cells {
+            match cell.state {
+                State::Outside => {}
+                State::Inside => add(cell.low, cell.high),
+                State::Unknown => {
+                    let parts = ((cell.high - cell.low) / step).ceil().max(4.0) as usize;
+                    let at = |i: usize| cell.low + (cell.high - cell.low) * (i as f64 / parts as f64);
+                    let holds: Vec<bool> = (0..=parts).map(|i| self.holds(at(i))).collect();
+                    for i in 0..parts {
+                        match (holds[i], holds[i + 1]) {
+                            (true, true) => add(at(i), at(i + 1)),
+                            (true, false) => add(at(i), self.end(at(i), at(i + 1))),
+                            (false, true) => add(self.end(at(i + 1), at(i)), at(i + 1)),
+                            (false, false) => {}
+                        }
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    /// The last value with a solution on the way from one that has one to one that has none.
+    fn end(&self, mut inside: f64, mut outside: f64) -> f64 {
+        for _ in 0..60 {
+            let middle = 0.5 * (inside + outside);
+            if middle == inside || middle == outside || (inside - outside).abs() < 1e-12 {
+                break;
+            }
+            if self.holds(middle) { inside = middle } else { outside = middle }
+        }
+        inside
+    }
+}
