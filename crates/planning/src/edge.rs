@@ -30,6 +30,9 @@ pub enum Patience {
     Thorough,
     /// A motion that would take long to prove free may count as blocked.
     Hasty,
+    /// A motion that looks free at a few states may count as free: what is blocked is certainly blocked, the rest has to be
+    /// asked about again.
+    Hopeful,
 }
 
 /// Validity of states and of the straight motions between them: all that a planner knows about a robot and its world.

@@ -35,11 +35,13 @@ pub struct SphereCover {
 pub struct CoverOptions {
     /// How far a leaf may stand out of the part that it covers, as a fraction of the radius of a ball around the part.
     pub overshoot: f64,
+    /// It may stand out this far in any case, metres: small parts then take few balls.
+    pub least: f64,
 }
 
 impl Default for CoverOptions {
     fn default() -> Self {
-        Self { overshoot: 0.06 }
+        Self { overshoot: 0.06, least: 0.003 }
     }
 }
 
@@ -53,7 +55,8 @@ impl SphereCover {
         let overshoot = options.overshoot.clamp(0.005, 1.0);
         let mut leaves: Vec<(Point3<f64>, f64)> = Vec::new();
         for part in parts {
-            let net = net::Net::of(part, overshoot);
+            let slack = (overshoot * part.bounding_sphere().1).max(options.least);
+            let net = net::Net::of(part, slack);
             leaves.extend(net.balls());
         }
         let balls: Vec<Ball> = leaves

@@ -1,10 +1,12 @@
 //! A robot as the benchmark sees it, and the stage of one problem.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use robotc_core::geom::{
     ConvexPart, ConvexParts, CoverOptions, DecomposeOptions, HullError, SphereCover, parts_of_shape,
 };
+use robotc_core::ids::Idx;
 use robotc_core::model::{Geometry, Shape};
 use robotc_core::srdf::Srdf;
 use robotc_core::{BodyIdx, Configuration, DofIdx, Kinematics, LinkIdx, Pose, RobotModel, TypedVec, World};
@@ -79,19 +81,17 @@ impl BenchRobot {
             d if d.continuous => Axis::wrapping(),
             d => Axis::bounded(d.lower, d.upper),
         };
-        let links = model
-            .links()
-            .iter()
-            .map(|link| {
-                let parts = hulls(&link.collisions);
-                parts.map(Arc::new).map_err(|error| BenchError::Hull { link: link.name.clone(), error })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        let links: TypedVec<LinkIdx, _> = links.into_iter().collect();
+        let shapes: Vec<(Arc<ConvexParts>, Arc<SphereCover>)> = side_by_side(model.links().len(), |i| {
+            let link = &model.links()[LinkIdx::new(i)];
+            let parts = hulls(&link.collisions);
+            let parts = parts.map_err(|error| BenchError::Hull { link: link.name.clone(), error })?;
+            let cover = SphereCover::of(&parts, &CoverOptions::default());
+            Ok((Arc::new(parts), Arc::new(cover)))
+        })?;
+        let links: TypedVec<LinkIdx, _> = shapes.iter().map(|(parts, _)| parts.clone()).collect();
+        let covers = shapes.into_iter().map(|(_, cover)| cover).collect();
         let self_pairs = self_pairs(&model, srdf, &dofs, &links);
         let space = Space::new(dofs.iter().map(axis).collect());
-        let cover = |parts: &Arc<ConvexParts>| Arc::new(SphereCover::of(parts, &CoverOptions::default()));
-        let covers = links.iter().map(cover).collect();
         Ok(Self { kinematics: Kinematics::new(model), dofs, space, links, covers, self_pairs })
     }
 
@@ -121,6 +121,33 @@ impl BenchRobot {
         });
         Ok(Stage { world, scene, lanes })
     }
+}
+
+/// What `of` makes of 0, 1, 2, ... below `count`, in this order, made on all processors; the first error, if any.
+fn side_by_side<T: Send, E: Send>(
+    count: usize,
+    of: impl Fn(usize) -> Result<T, E> + Sync,
+) -> Result<Vec<T>, E> {
+    let next = AtomicUsize::new(0);
+    let work = || {
+        let mut made = Vec::new();
+        loop {
+            let i = next.fetch_add(1, Ordering::Relaxed);
+            if i >= count {
+                return made;
+            }
+            made.push((i, of(i)));
+        }
+    };
+    let workers = std::thread::available_parallelism().map_or(1, |n| n.get()).min(count.max(1));
+    let mut made = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..workers).map(|_| scope.spawn(work)).collect();
+        let mut made = work();
+        others.into_iter().for_each(|other| made.extend(other.join().expect("a worker does not panic")));
+        made
+    });
+    made.sort_by_key(|(i, _)| *i);
+    made.into_iter().map(|(_, result)| result).collect()
 }
 
 /// One convex hull for each element, in the frame of the elements.

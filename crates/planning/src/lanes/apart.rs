@@ -29,7 +29,7 @@ struct Axis {
 }
 
 /// Cells along each axis, by the number of axes.
-const CELLS: [usize; 3] = [512, 64, 20];
+const CELLS: [usize; 3] = [1024, 256, 32];
 
 /// Pieces of a motion that are looked at one by one when all of it at once is not proven.
 const PIECES: usize = 8;

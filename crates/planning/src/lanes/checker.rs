@@ -6,8 +6,9 @@ use robotc_core::ids::Idx;
 use robotc_core::{BodyIdx, Pose};
 
 use super::Width;
+use super::glance::{Glance, Meeting, View, glance};
 use super::kernel::{Around, Close, MOST_LANES, Motion, Scratch, look};
-use super::mechanism::{Body, LaneRobot, number_of};
+use super::mechanism::{Body, Group, LaneRobot, number_of};
 use super::obstacle::Obstacle;
 use crate::edge::{Blocked, EdgeChecker, Obstruction, Patience};
 use crate::scene::Scene;
@@ -28,6 +29,8 @@ pub struct LaneChecker<'a> {
     /// The body of the scene that each obstacle belongs to.
     owners: Vec<BodyIdx>,
     near: Vec<Vec<(u32, f32)>>,
+    /// The same one by one: what was hit last comes first, since what is hit once is often hit again.
+    meetings: Vec<Meeting>,
     margin: f64,
     patience: Patience,
     work: &'a mut LaneMemory,
@@ -39,6 +42,10 @@ pub struct LaneChecker<'a> {
 pub struct LaneStatistics {
     /// Motions asked for.
     pub edges: u64,
+    /// Single configurations looked at in lanes.
+    pub looks: u64,
+    /// Motions in which nothing was hit at a first look, but spheres around the robot touched something.
+    pub open: u64,
     /// Stretches looked at in lanes.
     pub stretches: u64,
     /// Distances of convex parts asked for.
@@ -68,6 +75,9 @@ const STRETCHES: usize = MOST_LANES;
 
 /// No stretch is longer than this at first, in the metric of the space.
 const LONGEST: f64 = 1.0 / 16.0;
+
+/// Looks at a motion are no farther apart than this, in the metric of the space.
+const LOOK: f64 = 1.0 / 32.0;
 
 /// Stretches in which nothing moves farther than this, in metres, are left to the convex parts.
 const FINE: f64 = 8e-3;
@@ -108,6 +118,11 @@ impl<'a> LaneChecker<'a> {
         }
         let near = near(robot, &obstacles, margin);
         let statistics = LaneStatistics::default();
+        // What is farther out moves more and touches more often.
+        let each = near.iter().enumerate().rev().flat_map(|(group, near)| {
+            near.iter().map(move |&(obstacle, room)| Meeting { group: group as u32, obstacle, room })
+        });
+        let meetings = each.collect();
         Self {
             robot,
             scene,
@@ -116,6 +131,7 @@ impl<'a> LaneChecker<'a> {
             obstacles,
             owners,
             near,
+            meetings,
             margin,
             patience: Patience::Thorough,
             work,
@@ -150,6 +166,31 @@ impl<'a> LaneChecker<'a> {
             self.settle(from, f64::from(middle), f64::from(half), close)?;
         }
         Ok(())
+    }
+
+    /// Whether the motion looks free at `count` states.
+    fn look(&mut self, from: &[f64], count: usize) -> Result<(), Blocked> {
+        self.statistics.edges += 1;
+        self.statistics.looks += count as u64;
+        self.work.set_steps(self.robot, from);
+        let LaneMemory { motion, scratch, difference, .. } = &mut *self.work;
+        let (robot, obstacles, meetings) = (self.robot, &self.obstacles, &self.meetings);
+        let view = View { robot, obstacles, meetings, motion, from, difference };
+        match self.width.dispatch(Looks { view, scratch, count }) {
+            Glance::Hit(close) => {
+                if let Close::Obstacle { body, obstacle } = close {
+                    let group = self.robot.bodies[body as usize].group as u32;
+                    let hit = |m: &Meeting| m.group == group && m.obstacle == obstacle;
+                    let at = self.meetings.iter().position(hit).expect("it was looked at");
+                    self.meetings[..=at].rotate_right(1);
+                }
+                Err(Blocked { fraction: 1.0, by: self.obstruction(close) })
+            }
+            Glance::Passed { open } => {
+                self.statistics.open += u64::from(open);
+                Ok(())
+            }
+        }
     }
 
     /// Decides by the convex parts whether two things that are close stay apart within a stretch.
@@ -266,35 +307,54 @@ fn apart(a: &ConvexPart, root_from_a: &Pose, b: &ConvexPart, root_from_b: &Pose,
     distance(a, root_from_a, b, root_from_b).distance
 }
 
-/// For each body, the obstacles that it can come near to in any configuration.
+/// For each group of bodies, the obstacles that it can come near to in any configuration.
 fn near(robot: &LaneRobot, obstacles: &[Obstacle], margin: f64) -> Vec<Vec<(u32, f32)>> {
-    let reach_of = |body: &Body| -> Vec<(u32, f32)> {
-        let Some(&(first, reach)) = body.chain.first() else { return vec![] };
+    let within_reach = |body: &Body, obstacle: &Obstacle| {
+        let Some(&(first, reach)) = body.chain.first() else { return false };
         // All of the body stays within its reach of the first joint that turns; sliding joints leave no fixed middle.
         let fixed = body.chain.iter().all(|&(step, _)| !robot.steps[step].slides);
         let middle = robot.steps[first].parent_from_joint.translation.vector;
-        let beyond = |obstacle: &Obstacle| {
-            let (centre, radius) = obstacle.ball;
-            let away = nalgebra::Vector3::from(centre) - middle;
-            fixed && body.chain.len() > 1 && away.norm() > reach + radius + margin + 1e-3
-        };
-        let list = obstacles.iter().enumerate().filter(|(_, obstacle)| !beyond(obstacle));
+        let (centre, radius) = obstacle.ball;
+        let away = nalgebra::Vector3::from(centre) - middle;
+        !fixed || body.chain.len() < 2 || away.norm() <= reach + radius + margin + 1e-3
+    };
+    let reach_of = |group: &Group| -> Vec<(u32, f32)> {
+        let any =
+            |obstacle: &Obstacle| group.bodies.iter().any(|&i| within_reach(&robot.bodies[i], obstacle));
+        let list = obstacles.iter().enumerate().filter(|(_, obstacle)| any(obstacle));
         list.map(|(i, _)| (i as u32, margin as f32)).collect()
     };
-    robot.bodies.iter().map(reach_of).collect()
+    robot.groups.iter().map(reach_of).collect()
 }
 
 impl LaneMemory {
-    /// Numbers of the motion by `difference` from `from`, and its first stretches.
-    fn prepare(&mut self, robot: &LaneRobot, from: &[f64], stretches: usize) {
-        let Motion { steps, bends, pairs, .. } = &mut self.motion;
+    /// What the joints do in the motion by `difference` from `from`.
+    fn set_steps(&mut self, robot: &LaneRobot, from: &[f64]) {
+        let steps = &mut self.motion.steps;
         steps.clear();
-        bends.clear();
-        pairs.clear();
         for step in &robot.steps {
             let (start, change) = step.motion(from, &self.difference);
             steps.push((start as f32, change as f32));
         }
+    }
+
+    /// Which pairs may touch in the motion by `difference` from `from`.
+    fn set_pairs(&mut self, robot: &LaneRobot, from: &[f64]) {
+        let pairs = &mut self.motion.pairs;
+        pairs.clear();
+        for (i, pair) in robot.pairs.iter().enumerate() {
+            if !pair.apart.as_ref().is_some_and(|apart| apart.holds(from, &self.difference)) {
+                pairs.push((i as u32, 0.0));
+            }
+        }
+    }
+
+    /// Numbers of the motion by `difference` from `from`, and its first stretches.
+    fn prepare(&mut self, robot: &LaneRobot, from: &[f64], stretches: usize) {
+        self.set_steps(robot, from);
+        self.set_pairs(robot, from);
+        let Motion { steps, bends, pairs, .. } = &mut self.motion;
+        bends.clear();
         let change = |step: usize| f64::from(steps[step].1.abs());
         // A hair more, for rounding.
         let above = |x: f64| (x * (1.0 + 1e-6)) as f32;
@@ -313,12 +373,9 @@ impl LaneMemory {
             }
             bends.push(above(0.5 * bend));
         }
-        for (i, pair) in robot.pairs.iter().enumerate() {
-            if pair.apart.as_ref().is_some_and(|apart| apart.holds(from, &self.difference)) {
-                continue;
-            }
-            let closing = pair.closing.iter().map(|&(step, distance)| change(step) * distance).sum();
-            pairs.push((i as u32, above(closing)));
+        for (i, closing) in pairs.iter_mut() {
+            let pair = &robot.pairs[*i as usize];
+            *closing = above(pair.closing.iter().map(|&(step, distance)| change(step) * distance).sum());
         }
         // Nothing moves faster than this, metres per motion.
         let speed = |body: &Body| body.chain.iter().map(|&(step, distance)| change(step) * distance).sum();
@@ -401,6 +458,22 @@ impl WithSimd for Pass<'_> {
     }
 }
 
+/// A first look at one motion.
+struct Looks<'a> {
+    view: View<'a>,
+    scratch: &'a mut Scratch,
+    count: usize,
+}
+
+impl WithSimd for Looks<'_> {
+    type Output = Glance;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Glance {
+        glance(simd, &self.view, self.count, self.scratch)
+    }
+}
+
 impl EdgeChecker for LaneChecker<'_> {
     fn space(&self) -> &Space {
         self.space
@@ -431,6 +504,10 @@ impl EdgeChecker for LaneChecker<'_> {
         self.space.difference_into(from, to, &mut difference);
         self.work.difference = difference;
         let length = self.space.distance(from, to);
+        if self.patience == Patience::Hopeful {
+            let blocks = (length / (LOOK * MOST_LANES as f64)).ceil().max(1.0);
+            return self.look(from, blocks as usize * MOST_LANES);
+        }
         let blocks = (length / (LONGEST * STRETCHES as f64)).ceil().max(1.0);
         self.check(from, blocks as usize * STRETCHES)
     }

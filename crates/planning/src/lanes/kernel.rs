@@ -5,7 +5,9 @@
 
 use pulp::Simd;
 
-use super::lane::{Lanes, Mask, Vector, cross, dot, minus, plus, scaled, times};
+use super::frames::{FrameMemory, Frames};
+use super::glance::Standing;
+use super::lane::{Lanes, Mask, Vector, cross, dot, minus, plus, times};
 use super::mechanism::{LaneRobot, Sphere};
 use super::obstacle::Obstacle;
 
@@ -26,7 +28,7 @@ pub(super) struct Motion {
 #[derive(Debug)]
 pub(super) struct Around<'a> {
     pub(super) obstacles: &'a [Obstacle],
-    /// For each body, the obstacles that it can come near to, with the room that it keeps from them.
+    /// For each group of bodies, the obstacles that it can come near to, with the room that it keeps from them.
     pub(super) near: &'a [Vec<(u32, f32)>],
 }
 
@@ -40,16 +42,14 @@ pub(super) enum Close {
 /// Memory of the kernel, kept between calls.
 #[derive(Debug)]
 pub(super) struct Scratch {
-    /// For each frame, rotation (nine), origin, angular and linear velocity: eighteen values.
-    frames: Vec<f32>,
+    pub(super) frames: FrameMemory,
+    /// For each frame, angular and linear velocity: six values.
+    velocities: Vec<f32>,
     /// For each body, how far its points may move within the stretch.
     travel: Vec<f32>,
-    /// Middles of all spheres in the root frame.
-    centres: Vec<f32>,
-    /// The call for which a middle was computed.
-    stamps: Vec<u32>,
-    call: u32,
-    stack: Vec<(u32, u32)>,
+    pub(super) stack: Vec<(u32, u32)>,
+    /// For each pair of bodies, what a look knows of it.
+    pub(super) standings: Vec<Standing>,
     /// What is close in open lanes that are not halved any more.
     pub(super) close: Vec<Close>,
     /// Something that some lane was left open for.
@@ -61,12 +61,11 @@ pub(super) struct Scratch {
 impl Default for Scratch {
     fn default() -> Self {
         Self {
-            frames: Vec::new(),
+            frames: FrameMemory::default(),
+            velocities: Vec::new(),
             travel: Vec::new(),
-            centres: Vec::new(),
-            stamps: Vec::new(),
-            call: 0,
             stack: Vec::new(),
+            standings: Vec::new(),
             close: Vec::new(),
             widest: Close::Pair(0),
             open: [0.0; MOST_LANES],
@@ -77,8 +76,8 @@ impl Default for Scratch {
 /// The most lanes of any processor.
 pub(super) const MOST_LANES: usize = 16;
 
-/// Values for each frame.
-const FRAME: usize = 18;
+/// Velocities of each frame.
+const VELOCITY: usize = 6;
 
 /// Something touches in the middle of some lane: which lane, and what.
 pub(super) type Hit = (usize, Close);
@@ -88,10 +87,8 @@ struct Kernel<'a, S: Simd> {
     simd: S,
     robot: &'a LaneRobot,
     travel: &'a mut [S::f32s],
-    frames: &'a mut [S::f32s],
-    centres: &'a mut [S::f32s],
-    stamps: &'a mut [u32],
-    call: u32,
+    frames: Frames<'a, S>,
+    velocities: &'a mut [S::f32s],
     stack: &'a mut Vec<(u32, u32)>,
     close: &'a mut Vec<Close>,
     widest: &'a mut Close,
@@ -114,15 +111,8 @@ pub(super) fn look<S: Simd>(
     scratch: &mut Scratch,
 ) -> Option<Hit> {
     let lanes = S::F32_LANES;
-    scratch.frames.resize((robot.steps.len() + 1) * FRAME * lanes, 0.0);
+    scratch.velocities.resize((robot.steps.len() + 1) * VELOCITY * lanes, 0.0);
     scratch.travel.resize(robot.bodies.len() * lanes, 0.0);
-    scratch.centres.resize(robot.spheres.len() * 3 * lanes, 0.0);
-    scratch.stamps.resize(robot.spheres.len(), 0);
-    scratch.call = scratch.call.wrapping_add(1);
-    if scratch.call == 0 {
-        scratch.stamps.fill(0);
-        scratch.call = 1;
-    }
     scratch.close.clear();
     let middle = Lanes::new(simd, simd.partial_load_f32s(middles));
     let half = Lanes::new(simd, simd.partial_load_f32s(halves));
@@ -130,10 +120,8 @@ pub(super) fn look<S: Simd>(
         simd,
         robot,
         travel: S::as_mut_simd_f32s(&mut scratch.travel).0,
-        frames: S::as_mut_simd_f32s(&mut scratch.frames).0,
-        centres: S::as_mut_simd_f32s(&mut scratch.centres).0,
-        stamps: &mut scratch.stamps,
-        call: scratch.call,
+        frames: Frames::place(simd, robot, &motion.steps, middle, &mut scratch.frames),
+        velocities: S::as_mut_simd_f32s(&mut scratch.velocities).0,
         stack: &mut scratch.stack,
         close: &mut scratch.close,
         widest: &mut scratch.widest,
@@ -141,7 +129,7 @@ pub(super) fn look<S: Simd>(
         halvable: Lanes::splat(simd, motion.halvable).less(half),
         rounding: robot.rounding as f32,
     };
-    kernel.place(motion, middle);
+    kernel.set_in_motion(motion);
     kernel.measure(motion, half);
     let hit = kernel.against_obstacles(around).or_else(|| kernel.against_itself(motion, half));
     let open = kernel.open;
@@ -156,68 +144,34 @@ impl<S: Simd> Kernel<'_, S> {
         Lanes::splat(self.simd, x)
     }
 
+    /// Angular velocity of a frame, and linear velocity of its origin.
     #[inline(always)]
-    fn vector(&self, frame: usize, at: usize) -> Vector<S> {
-        let values = &self.frames[frame * FRAME + at..frame * FRAME + at + 3];
-        [Lanes::new(self.simd, values[0]), Lanes::new(self.simd, values[1]), Lanes::new(self.simd, values[2])]
+    fn velocity(&self, frame: usize) -> (Vector<S>, Vector<S>) {
+        let values = &self.velocities[frame * VELOCITY..(frame + 1) * VELOCITY];
+        let at = |k: usize| Lanes::new(self.simd, values[k]);
+        ([at(0), at(1), at(2)], [at(3), at(4), at(5)])
     }
 
+    /// Velocities of all frames.
     #[inline(always)]
-    fn set(&mut self, frame: usize, at: usize, value: &Vector<S>) {
-        let values = &mut self.frames[frame * FRAME + at..frame * FRAME + at + 3];
-        (values[0], values[1], values[2]) = (value[0].raw, value[1].raw, value[2].raw);
-    }
-
-    /// Columns of the rotation of a frame.
-    #[inline(always)]
-    fn columns(&self, frame: usize) -> [Vector<S>; 3] {
-        [self.vector(frame, 0), self.vector(frame, 3), self.vector(frame, 6)]
-    }
-
-    /// Poses and velocities of all frames.
-    #[inline(always)]
-    fn place(&mut self, motion: &Motion, middle: Lanes<S>) {
-        let (zero, one) = (self.splat(0.0), self.splat(1.0));
-        for (at, value) in [
-            (0, [one, zero, zero]),
-            (3, [zero, one, zero]),
-            (6, [zero, zero, one]),
-            (9, [zero; 3]),
-            (12, [zero; 3]),
-            (15, [zero; 3]),
-        ] {
-            self.set(0, at, &value);
-        }
+    fn set_in_motion(&mut self, motion: &Motion) {
+        let still = self.splat(0.0).raw;
+        self.velocities[..VELOCITY].fill(still);
         let robot = self.robot;
-        for (i, (step, &(start, change))) in robot.steps.iter().zip(&motion.steps).enumerate() {
-            let value = self.splat(start) + middle * change;
-            let [x, y, z] = self.columns(step.parent);
-            // A column of the joint's rotation, and its shift, are mixtures of the parent's columns.
-            let [row_x, row_y, row_z] = step.rows;
-            let joint_x = mix(&x, &y, &z, [row_x[0], row_y[0], row_z[0]], zero);
-            let joint_y = mix(&x, &y, &z, [row_x[1], row_y[1], row_z[1]], zero);
-            let axis = mix(&x, &y, &z, [row_x[2], row_y[2], row_z[2]], zero);
-            let arm = mix(&x, &y, &z, step.shift, zero);
-            let (spin, speed) = (self.vector(step.parent, 12), self.vector(step.parent, 15));
-            let origin = plus(&self.vector(step.parent, 9), &arm);
-            let speed = plus(&speed, &cross(&spin, &arm));
+        for (i, (step, &(_, change))) in robot.steps.iter().zip(&motion.steps).enumerate() {
+            let (mut spin, mut speed) = self.velocity(step.parent);
+            let arm = minus(&self.frames.origin(i + 1), &self.frames.origin(step.parent));
+            speed = plus(&speed, &cross(&spin, &arm));
+            let own = times(&self.frames.axis(i + 1), self.splat(change));
             if step.slides {
-                let slid = times(&axis, value);
-                let pushed = plus(&cross(&spin, &slid), &times(&axis, self.splat(change)));
-                self.set(i + 1, 0, &joint_x);
-                self.set(i + 1, 3, &joint_y);
-                self.set(i + 1, 9, &plus(&origin, &slid));
-                self.set(i + 1, 12, &spin);
-                self.set(i + 1, 15, &plus(&speed, &pushed));
+                speed = plus(&speed, &own);
             } else {
-                let (sine, cosine) = value.sin_cos();
-                self.set(i + 1, 0, &plus(&times(&joint_x, cosine), &times(&joint_y, sine)));
-                self.set(i + 1, 3, &minus(&times(&joint_y, cosine), &times(&joint_x, sine)));
-                self.set(i + 1, 9, &origin);
-                self.set(i + 1, 12, &plus(&spin, &times(&axis, self.splat(change))));
-                self.set(i + 1, 15, &speed);
+                spin = plus(&spin, &own);
             }
-            self.set(i + 1, 6, &axis);
+            let values = &mut self.velocities[(i + 1) * VELOCITY..(i + 2) * VELOCITY];
+            for k in 0..3 {
+                (values[k], values[k + 3]) = (spin[k].raw, speed[k].raw);
+            }
         }
     }
 
@@ -229,9 +183,9 @@ impl<S: Simd> Kernel<'_, S> {
         let half_squared = half * half;
         for (i, body) in robot.bodies.iter().enumerate() {
             let root = body.spheres.start;
-            let centre = self.centre(root, body.frame);
-            let (spin, speed) = (self.vector(body.frame, 12), self.vector(body.frame, 15));
-            let arm = minus(&centre, &self.vector(body.frame, 9));
+            let centre = self.frames.centre(root, body.frame);
+            let (spin, speed) = self.velocity(body.frame);
+            let arm = minus(&centre, &self.frames.origin(body.frame));
             let at_centre = plus(&speed, &cross(&spin, &arm));
             let radius = robot.spheres[root].outer;
             let fastest = dot(&at_centre, &at_centre).sqrt() + dot(&spin, &spin).sqrt() * radius;
@@ -241,30 +195,12 @@ impl<S: Simd> Kernel<'_, S> {
         }
     }
 
-    /// The middle of a sphere in the root frame, computed once for each call.
-    #[inline(always)]
-    fn centre(&mut self, sphere: usize, frame: usize) -> Vector<S> {
-        let at = 3 * sphere;
-        if self.stamps[sphere] != self.call {
-            self.stamps[sphere] = self.call;
-            let [x, y, z] = self.columns(frame);
-            let origin = self.vector(frame, 9);
-            let [cx, cy, cz] = self.robot.spheres[sphere].centre;
-            for k in 0..3 {
-                let value = origin[k] + x[k] * cx + y[k] * cy + z[k] * cz;
-                self.centres[at + k] = value.raw;
-            }
-        }
-        let (simd, values) = (self.simd, &self.centres[at..at + 3]);
-        [Lanes::new(simd, values[0]), Lanes::new(simd, values[1]), Lanes::new(simd, values[2])]
-    }
-
     #[inline(always)]
     fn against_obstacles(&mut self, around: &Around<'_>) -> Option<Hit> {
         let robot = self.robot;
         for (i, body) in robot.bodies.iter().enumerate() {
             let travel = Lanes::new(self.simd, self.travel[i]);
-            for &(obstacle, room) in &around.near[i] {
+            for &(obstacle, room) in &around.near[body.group] {
                 let solid = &around.obstacles[obstacle as usize];
                 let slack = self.rounding + solid.pad + room;
                 let reach = travel + self.splat(slack);
@@ -274,7 +210,7 @@ impl<S: Simd> Kernel<'_, S> {
                 while at < body.spheres.end {
                     let sphere = &robot.spheres[at];
                     let leaf = sphere.next as usize == at + 1;
-                    let centre = self.centre(at, body.frame);
+                    let centre = self.frames.centre(at, body.frame);
                     let (least, most) = solid.squared_distance(self.simd, &centre);
                     let outer = reach + self.splat(sphere.outer);
                     let maybe = least.less_equal(outer * outer);
@@ -323,7 +259,10 @@ impl<S: Simd> Kernel<'_, S> {
             let mut is_close = false;
             while let Some((at_a, at_b)) = self.stack.pop() {
                 let (of_a, of_b) = (&robot.spheres[at_a as usize], &robot.spheres[at_b as usize]);
-                let apart = minus(&self.centre(at_a as usize, a.frame), &self.centre(at_b as usize, b.frame));
+                let apart = minus(
+                    &self.frames.centre(at_a as usize, a.frame),
+                    &self.frames.centre(at_b as usize, b.frame),
+                );
                 let squared = dot(&apart, &apart);
                 let outer = reach + self.splat(of_a.outer + of_b.outer);
                 let maybe = squared.less_equal(outer * outer);
@@ -387,24 +326,8 @@ impl<S: Simd> Kernel<'_, S> {
     }
 }
 
-/// A mixture of three vectors. Factors of zero are frequent.
 #[inline(always)]
-fn mix<S: Simd>(x: &Vector<S>, y: &Vector<S>, z: &Vector<S>, factors: [f32; 3], zero: Lanes<S>) -> Vector<S> {
-    let mut sum = [zero; 3];
-    if factors[0] != 0.0 {
-        sum = scaled(x, factors[0]);
-    }
-    if factors[1] != 0.0 {
-        sum = plus(&sum, &scaled(y, factors[1]));
-    }
-    if factors[2] != 0.0 {
-        sum = plus(&sum, &scaled(z, factors[2]));
-    }
-    sum
-}
-
-#[inline(always)]
-fn children(spheres: &[Sphere], of: u32, mut each: impl FnMut(u32)) {
+pub(super) fn children(spheres: &[Sphere], of: u32, mut each: impl FnMut(u32)) {
     let mut child = of + 1;
     while child < spheres[of as usize].next {
         each(child);

@@ -17,7 +17,9 @@ pub struct LaneRobot {
     pub(super) steps: Vec<Step>,
     pub(super) bodies: Vec<Body>,
     pub(super) pairs: Vec<Pair>,
-    /// Spheres of all bodies, in the frames of the bodies.
+    /// Bodies that move as one.
+    pub(super) groups: Vec<Group>,
+    /// Spheres of all bodies, in the frames that carry them, then those around groups.
     pub(super) spheres: Vec<Sphere>,
     /// For each link, the frame that carries it and where it is in that frame.
     pub(super) carriers: TypedVec<LinkIdx, (usize, Pose)>,
@@ -43,12 +45,22 @@ pub(super) struct Step {
     pub(super) shift: [f32; 3],
 }
 
+/// All bodies on one frame.
+#[derive(Debug, Clone)]
+pub(super) struct Group {
+    pub(super) frame: usize,
+    pub(super) bodies: Vec<usize>,
+    /// The sphere around all of them.
+    pub(super) ball: usize,
+}
+
 /// A rigid body of the robot.
 #[derive(Debug, Clone)]
 pub(super) struct Body {
     /// The link, or `None` for something that is held.
     pub(super) link: Option<LinkIdx>,
     pub(super) frame: usize,
+    pub(super) group: usize,
     /// Where the body is in its frame.
     pub(super) frame_from_body: Pose,
     /// Its spheres; the first is the ball around all of it.
@@ -119,6 +131,7 @@ impl LaneRobot {
             steps,
             bodies: Vec::new(),
             pairs: Vec::new(),
+            groups: Vec::new(),
             spheres: Vec::new(),
             carriers,
             rounding: 0.0,
@@ -134,9 +147,11 @@ impl LaneRobot {
                 body_of[link] = Some(body);
             }
         }
-        for &(a, b) in self_pairs {
-            if let (Some(a), Some(b)) = (body_of[a], body_of[b]) {
-                robot.pairs.extend(robot.pair(a, b));
+        let extents = extents(kinematics, &robot.steps, dofs);
+        for &(link_a, link_b) in self_pairs {
+            if let (Some(a), Some(b)) = (body_of[link_a], body_of[link_b]) {
+                let pair = robot.pair(a, b, [&parts[link_a], &parts[link_b]], &extents);
+                robot.pairs.extend(pair);
             }
         }
         let limits = kinematics.model().dofs();
@@ -144,6 +159,7 @@ impl LaneRobot {
         for i in 0..robot.pairs.len() {
             robot.pairs[i].apart = Apart::of(&robot, &robot.pairs[i], parts, &ranges);
         }
+        robot.group();
         robot.rounding = robot.rounding();
         robot
     }
@@ -170,8 +186,25 @@ impl LaneRobot {
         }
         let chain = self.chain(frame, &frame_from_body, parts, extents);
         let spheres = first..self.spheres.len();
-        self.bodies.push(Body { link, frame, frame_from_body, spheres, chain });
+        self.bodies.push(Body { link, frame, group: 0, frame_from_body, spheres, chain });
         self.bodies.len() - 1
+    }
+
+    /// Finds bodies that move as one, and puts pairs of bodies of the same groups one after another.
+    fn group(&mut self) {
+        for frame in 0..=self.steps.len() {
+            let of_frame = |&i: &usize| self.bodies[i].frame == frame;
+            let bodies: Vec<usize> = (0..self.bodies.len()).filter(of_frame).collect();
+            let balls: Vec<Sphere> =
+                bodies.iter().map(|&i| self.spheres[self.bodies[i].spheres.start]).collect();
+            if let Some(around) = around(&balls) {
+                bodies.iter().for_each(|&i| self.bodies[i].group = self.groups.len());
+                self.groups.push(Group { frame, bodies, ball: self.spheres.len() });
+                self.spheres.push(around);
+            }
+        }
+        let groups = |pair: &Pair| (self.bodies[pair.a].group, self.bodies[pair.b].group);
+        self.pairs.sort_by_key(groups);
     }
 
     /// How far points of a body are from the axes that move it, at most and in any configuration: no farther than the bones
@@ -204,14 +237,56 @@ impl LaneRobot {
     }
 
     /// The pair of two bodies; `None` when nothing moves one against the other.
-    pub(super) fn pair(&self, a: usize, b: usize) -> Option<Pair> {
+    ///
+    /// What a step does to the distance of the two can be seen from either side: it moves the one, or the other the other
+    /// way. So the smaller of their distances from its axis bounds how fast they come together.
+    fn pair(&self, a: usize, b: usize, parts: [&ConvexParts; 2], extents: &[f64]) -> Option<Pair> {
         let (chain_a, chain_b) = (&self.bodies[a].chain, &self.bodies[b].chain);
         let only = |own: &[(usize, f64)], other: &[(usize, f64)]| -> Vec<(usize, f64)> {
             own.iter().copied().filter(|(step, _)| other.iter().all(|(s, _)| s != step)).collect()
         };
-        let mut closing = only(chain_a, chain_b);
-        closing.extend(only(chain_b, chain_a));
+        let (own, other) = (only(chain_a, chain_b), only(chain_b, chain_a));
+        let mut closing = self.from_outside(b, parts[1], &own, extents);
+        closing.extend(self.from_outside(a, parts[0], &other, extents));
         (!closing.is_empty()).then_some(Pair { a, b, closing, apart: None })
+    }
+
+    /// The steps of a branch that does not move a body, each with its distance in the branch or that of the body from its
+    /// axis, in any configuration, whichever is smaller.
+    fn from_outside(
+        &self,
+        body: usize,
+        parts: &ConvexParts,
+        branch: &[(usize, f64)],
+        extents: &[f64],
+    ) -> Vec<(usize, f64)> {
+        let Some(&(first, _)) = branch.first() else { return vec![] };
+        let Body { frame, frame_from_body, .. } = self.bodies[body];
+        let root = self.steps[first].parent;
+        let points = || parts.points().map(|p| frame_from_body * p);
+        // From the origin of the frame reached so far: first towards the root, then out along the branch.
+        let mut reach = points().map(|p| p.coords.norm()).fold(0.0, f64::max);
+        let mut at = frame;
+        while at != root {
+            let step = &self.steps[at - 1];
+            reach += step.parent_from_joint.translation.vector.norm() + extents[at - 1];
+            at = step.parent;
+        }
+        let mut bounded = Vec::new();
+        for (i, &(step, distance)) in branch.iter().enumerate() {
+            let joint = &self.steps[step];
+            let mut beside = reach + joint.parent_from_joint.translation.vector.norm();
+            reach = beside + extents[step];
+            if i == 0 && frame == root {
+                let inside = points().map(|p| joint.parent_from_joint.inverse_transform_point(&p));
+                let far = inside.map(|p| (p.x.hypot(p.y), p.coords.norm()));
+                let (from_axis, from_origin) =
+                    far.fold((0.0_f64, 0.0_f64), |most, p| (most.0.max(p.0), most.1.max(p.1)));
+                (beside, reach) = (from_axis, from_origin + extents[step]);
+            }
+            bounded.push((step, if joint.slides { 1.0 } else { distance.min(beside) }));
+        }
+        bounded
     }
 
     /// A step turns what hangs on it by an angle that is known to about a millionth, and adds about as much by its own
@@ -263,6 +338,22 @@ impl Step {
         let value = if self.slides { value } else { value - TAU * (value / TAU).round() };
         (value, self.factor * difference[self.column])
     }
+}
+
+/// A sphere around spheres; `None` around none.
+fn around(spheres: &[Sphere]) -> Option<Sphere> {
+    let centre = [0, 1, 2].map(|k| {
+        let low = spheres.iter().map(|s| s.centre[k] - s.outer).fold(f32::INFINITY, f32::min);
+        let high = spheres.iter().map(|s| s.centre[k] + s.outer).fold(f32::NEG_INFINITY, f32::max);
+        0.5 * (low + high)
+    });
+    let reach = |s: &Sphere| {
+        let away: f64 = (0..3).map(|k| f64::from(s.centre[k] - centre[k]).powi(2)).sum();
+        away.sqrt() + f64::from(s.outer)
+    };
+    let outer = spheres.iter().map(reach).reduce(f64::max)?;
+    // A hair more, for rounding.
+    Some(Sphere { centre, outer: (outer * (1.0 + 1e-6)) as f32, inner: 0.0, next: 0 })
 }
 
 /// A coefficient that is zero but for rounding becomes zero, which the kernel skips.

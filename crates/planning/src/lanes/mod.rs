@@ -10,6 +10,8 @@
 
 mod apart;
 mod checker;
+mod frames;
+mod glance;
 mod kernel;
 mod lane;
 mod mechanism;

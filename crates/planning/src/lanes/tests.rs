@@ -41,7 +41,7 @@ fn covers() -> Covers {
     let model = testbed::model(false);
     let cover = |collisions: &[Geometry]| {
         let parts = parts_of(collisions, &DecomposeOptions::default()).unwrap();
-        Arc::new(SphereCover::of(&parts, &CoverOptions { overshoot: 0.1 }))
+        Arc::new(SphereCover::of(&parts, &CoverOptions { overshoot: 0.1, least: 0.0 }))
     };
     model.links().iter().map(|link| cover(&link.collisions)).collect()
 }

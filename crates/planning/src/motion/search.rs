@@ -10,7 +10,7 @@ use robotc_core::rng::Rng;
 use super::tree::Tree;
 use super::{MotionFailure, MotionPlan};
 use crate::budget::Budget;
-use crate::edge::EdgeChecker;
+use crate::edge::{EdgeChecker, Patience};
 use crate::space::Space;
 
 /// Parameters of the search.
@@ -22,13 +22,19 @@ pub struct SearchOptions {
     pub local: f64,
     /// Iterations of the shortest run; others are 1, 1, 2, 1, 1, 2, 4, ... times as long.
     pub restart: u32,
+    /// A node from which a step was blocked is extended only towards samples within this many steps (Yershova, Jaillet,
+    /// Simeon and LaValle, "Dynamic-domain RRTs", 2005).
+    pub domain: f64,
+    /// Ways that look free are proven only when they are complete, until so many of a run were not free after all; then
+    /// each motion is proven as it is added.
+    pub hopes: u32,
     /// Iterations, over all runs, after which the search gives up.
     pub max_iterations: u32,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { step: 0.1, local: 0.3, restart: 4000, max_iterations: 500_000 }
+        Self { step: 0.1, local: 0.3, restart: 4000, domain: 4.0, hopes: 100, max_iterations: 500_000 }
     }
 }
 
@@ -50,21 +56,24 @@ pub(super) fn run<C: EdgeChecker + ?Sized>(
     budget: &Budget<'_>,
     seed: Seed,
 ) -> Result<MotionPlan, MotionFailure> {
+    checker.set_patience(Patience::Thorough);
     if checker.edge(start, goal).is_ok() {
         return Ok(MotionPlan { path: vec![start.to_vec(), goal.to_vec()], iterations: 0 });
     }
     let mut search = Search {
         step: options.step * checker.space().diameter(),
-        from_start: Tree::default(),
-        from_goal: Tree::default(),
+        from_start: Tree::new(checker.space()),
+        from_goal: Tree::new(checker.space()),
         sample: start.to_vec(),
         next: start.to_vec(),
+        disappointments: 0,
         options,
     };
     let mut iterations = 0;
     for run in 0.. {
-        search.from_start.plant(start);
-        search.from_goal.plant(goal);
+        search.from_start.plant(checker.space(), start);
+        search.from_goal.plant(checker.space(), goal);
+        search.disappointments = 0;
         let mut rng = seed.at(run).rng();
         let length = options.restart.saturating_mul(luby(run + 1)).max(1);
         for _ in 0..length {
@@ -100,27 +109,42 @@ struct Search<'a> {
     from_goal: Tree,
     sample: Vec<f64>,
     next: Vec<f64>,
+    /// Ways that looked free and were not, in this run.
+    disappointments: u32,
 }
 
 impl Search<'_> {
     /// Grows the smaller tree by a step and tries to connect; a path when the trees meet.
     fn iterate<C: EdgeChecker + ?Sized>(&mut self, checker: &mut C, rng: &mut Rng) -> Option<Vec<Vec<f64>>> {
-        let Self { options, step, from_start, from_goal, sample, next } = self;
+        let hopeful = self.disappointments < self.options.hopes;
+        checker.set_patience(if hopeful { Patience::Hopeful } else { Patience::Thorough });
+        let Self { options, step, from_start, from_goal, sample, next, disappointments } = self;
         let forward = from_start.len() <= from_goal.len();
         let (grown, other) = if forward { (from_start, from_goal) } else { (from_goal, from_start) };
         draw(checker.space(), grown, options.local, *step, sample, rng);
         let (near, distance) = grown.nearest(checker.space(), sample);
-        let new = match extend(checker, grown, near, distance, sample, *step, next) {
+        if distance > *grown.domain(near) {
+            return None;
+        }
+        let new = match extend(checker, grown, near, distance, sample, *step, !hopeful, next) {
             Reach::There(node) | Reach::Short(node) => node,
-            Reach::Blocked => return None,
+            Reach::Blocked => {
+                *grown.domain(near) = options.domain * *step;
+                return None;
+            }
         };
         sample.copy_from_slice(grown.state(new));
         let (mut at, mut distance) = other.nearest(checker.space(), sample);
         loop {
-            match extend(checker, other, at, distance, sample, *step, next) {
+            match extend(checker, other, at, distance, sample, *step, !hopeful, next) {
                 Reach::Short(node) => (at, distance) = (node, distance - *step),
                 Reach::Blocked => return None,
                 Reach::There(met) => {
+                    checker.set_patience(Patience::Thorough);
+                    if !prove(checker, grown, new) || !prove(checker, other, met) {
+                        *disappointments += 1;
+                        return None;
+                    }
                     let (mut path, rest) = (grown.to_root(new), other.to_root(met));
                     path.reverse();
                     // Both nodes are the same state; it is kept once.
@@ -133,6 +157,18 @@ impl Search<'_> {
             }
         }
     }
+}
+
+/// Proves the way from the root to a node, and prunes what hangs on a motion that is not free. Whether all of it is.
+fn prove<C: EdgeChecker + ?Sized>(checker: &mut C, tree: &mut Tree, node: usize) -> bool {
+    while let Some(unproven) = tree.first_unproven(node) {
+        if checker.edge(tree.state(tree.parent(unproven)), tree.state(unproven)).is_err() {
+            tree.prune(unproven);
+            return false;
+        }
+        tree.prove(unproven);
+    }
+    true
 }
 
 fn draw(space: &Space, tree: &Tree, local: f64, step: f64, sample: &mut [f64], rng: &mut Rng) {
@@ -163,6 +199,7 @@ fn extend<C: EdgeChecker + ?Sized>(
     distance: f64,
     towards: &[f64],
     step: f64,
+    proven: bool,
     next: &mut Vec<f64>,
 ) -> Reach {
     let arrives = distance <= step;
@@ -175,7 +212,7 @@ fn extend<C: EdgeChecker + ?Sized>(
     if checker.edge(tree.state(node), next).is_err() {
         return Reach::Blocked;
     }
-    let new = tree.push(node, next);
+    let new = tree.push(checker.space(), node, next, proven);
     if arrives { Reach::There(new) } else { Reach::Short(new) }
 }
 

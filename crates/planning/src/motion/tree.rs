@@ -1,22 +1,53 @@
 //! A search tree in flat memory that is kept from one search to the next.
 
+use std::f32::consts::TAU;
+
 use crate::space::Space;
 
 /// States with their parents; the first is the root.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct Tree {
     dimension: usize,
     states: Vec<f64>,
     parents: Vec<u32>,
+    /// Whether the motion from the parent is proven free.
+    proven: Vec<bool>,
+    /// For each node, how far away samples may be for it to be extended.
+    domains: Vec<f64>,
+    /// The states once more, weighted, in single precision: a column for each coordinate, filled up with infinity.
+    columns: Vec<Vec<f32>>,
+    /// For each coordinate, half a turn in its column; infinite when it does not wrap.
+    turns: Vec<f32>,
+    arch: pulp::Arch,
 }
 
+/// Distances that are computed together.
+const BLOCK: usize = 64;
+
 impl Tree {
+    pub(super) fn new(space: &Space) -> Self {
+        let turn =
+            |axis: &crate::space::Axis| if axis.wraps { TAU * axis.weight as f32 } else { f32::INFINITY };
+        Self {
+            dimension: space.dimension(),
+            states: Vec::new(),
+            parents: Vec::new(),
+            proven: Vec::new(),
+            domains: Vec::new(),
+            columns: vec![Vec::new(); space.dimension()],
+            turns: space.axes().iter().map(turn).collect(),
+            arch: pulp::Arch::new(),
+        }
+    }
+
     /// Forgets everything but the memory and starts from a root.
-    pub(super) fn plant(&mut self, root: &[f64]) {
-        self.dimension = root.len();
+    pub(super) fn plant(&mut self, space: &Space, root: &[f64]) {
         self.states.clear();
         self.parents.clear();
-        self.push(0, root);
+        self.proven.clear();
+        self.domains.clear();
+        self.columns.iter_mut().for_each(Vec::clear);
+        self.push(space, 0, root, true);
     }
 
     pub(super) fn len(&self) -> usize {
@@ -27,23 +58,116 @@ impl Tree {
         &self.states[node * self.dimension..(node + 1) * self.dimension]
     }
 
-    pub(super) fn push(&mut self, parent: usize, q: &[f64]) -> usize {
+    pub(super) fn push(&mut self, space: &Space, parent: usize, q: &[f64], proven: bool) -> usize {
         let node = self.len();
         self.states.extend_from_slice(q);
         self.parents.push(parent as u32);
+        self.proven.push(proven);
+        self.domains.push(f64::INFINITY);
+        for ((column, axis), &x) in self.columns.iter_mut().zip(space.axes()).zip(q) {
+            if node % BLOCK == 0 {
+                column.resize(node + BLOCK, f32::INFINITY);
+            }
+            column[node] = place(axis, x);
+        }
         node
     }
 
-    /// The node nearest to `q`, the first of equals, and its distance.
+    /// The node nearest to `q` and its distance. Nodes that are equally near but for rounding count as equal; the first of
+    /// them is taken.
     pub(super) fn nearest(&self, space: &Space, q: &[f64]) -> (usize, f64) {
-        let mut best = (0, f64::INFINITY);
-        for (node, state) in self.states.chunks_exact(self.dimension).enumerate() {
-            let distance = space.squared_distance(state, q);
-            if distance < best.1 {
-                best = (node, distance);
+        let node = self.arch.dispatch(|| {
+            let mut best = (0, f32::INFINITY);
+            for first in (0..self.len()).step_by(BLOCK) {
+                let mut squares = [0.0_f32; BLOCK];
+                for (i, column) in self.columns.iter().enumerate() {
+                    let (x, turn) = (place(&space.axes()[i], q[i]), self.turns[i]);
+                    let block: &[f32; BLOCK] =
+                        column[first..].first_chunk().expect("columns are whole blocks");
+                    if turn.is_finite() {
+                        for (square, y) in squares.iter_mut().zip(block) {
+                            let d = (x - y).abs();
+                            let d = d.min((turn - d).abs());
+                            *square += d * d;
+                        }
+                    } else {
+                        for (square, y) in squares.iter_mut().zip(block) {
+                            let d = x - y;
+                            *square += d * d;
+                        }
+                    }
+                }
+                let mut least = [f32::INFINITY; 16];
+                for sixteen in squares.chunks_exact(16) {
+                    for (least, square) in least.iter_mut().zip(sixteen) {
+                        *least = if square < least { *square } else { *least };
+                    }
+                }
+                let least = least.into_iter().fold(f32::INFINITY, f32::min);
+                if least < best.1 {
+                    let at = squares.iter().position(|s| *s == least).expect("the least is one of them");
+                    best = (first + at, least);
+                }
             }
+            best.0
+        });
+        (node, space.distance(self.state(node), q))
+    }
+
+    /// How far away samples may be for a node to be extended.
+    pub(super) fn domain(&mut self, node: usize) -> &mut f64 {
+        &mut self.domains[node]
+    }
+
+    /// The first motion on the way from the root to `node` that is not proven: the node at its end.
+    pub(super) fn first_unproven(&self, mut node: usize) -> Option<usize> {
+        let mut found = None;
+        while node != 0 {
+            if !self.proven[node] {
+                found = Some(node);
+            }
+            node = self.parents[node] as usize;
         }
-        (best.0, best.1.sqrt())
+        found
+    }
+
+    pub(super) fn parent(&self, node: usize) -> usize {
+        self.parents[node] as usize
+    }
+
+    pub(super) fn prove(&mut self, node: usize) {
+        self.proven[node] = true;
+    }
+
+    /// Takes a node away with all that hangs on it.
+    pub(super) fn prune(&mut self, node: usize) {
+        const GONE: u32 = u32::MAX;
+        // Parents come before their children, so that one pass finds what goes and where the rest goes.
+        let mut place: Vec<u32> = (0..node as u32).collect();
+        let mut kept = node;
+        for old in node..self.len() {
+            let parent = self.parents[old] as usize;
+            if old == node || place[parent] == GONE {
+                place.push(GONE);
+                continue;
+            }
+            place.push(kept as u32);
+            self.parents[kept] = place[parent];
+            self.proven[kept] = self.proven[old];
+            self.domains[kept] = self.domains[old];
+            let from = old * self.dimension;
+            self.states.copy_within(from..from + self.dimension, kept * self.dimension);
+            self.columns.iter_mut().for_each(|column| column[kept] = column[old]);
+            kept += 1;
+        }
+        for column in &mut self.columns {
+            column[kept..].fill(f32::INFINITY);
+            column.truncate(kept.next_multiple_of(BLOCK));
+        }
+        self.parents.truncate(kept);
+        self.proven.truncate(kept);
+        self.domains.truncate(kept);
+        self.states.truncate(kept * self.dimension);
     }
 
     /// States from `node` to the root, both included.
@@ -54,5 +178,68 @@ impl Tree {
             path.push(self.state(node).to_vec());
         }
         path
+    }
+}
+
+/// A coordinate as it stands in a column; angles that wrap are in one turn.
+fn place(axis: &crate::space::Axis, x: f64) -> f32 {
+    use std::f64::consts::TAU;
+    let x = if axis.wraps { x - TAU * (x / TAU).floor() } else { x };
+    (axis.weight * x) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::Axis;
+    use robotc_core::Seed;
+
+    #[test]
+    fn the_nearest_is_found_after_pruning_too() {
+        let heavy = Axis { weight: 2.0, ..Axis::bounded(-4.0, 1.0) };
+        let space = Space::new(vec![Axis::wrapping(), heavy, Axis::bounded(0.0, 1.0)]);
+        let mut rng = Seed::new(4).rng();
+        let mut tree = Tree::new(&space);
+        tree.plant(&space, &space.sample(&mut rng));
+        for _ in 0..300 {
+            // Some a turn away.
+            let mut q = space.sample(&mut rng);
+            q[0] += 6.283185307179586 * rng.below(3) as f64;
+            let parent = rng.below(tree.len());
+            tree.push(&space, parent, &q, rng.below(2) == 0);
+        }
+        for _ in 0..20 {
+            for _ in 0..20 {
+                let q = space.sample(&mut rng);
+                let (node, distance) = tree.nearest(&space, &q);
+                assert_eq!(distance, space.distance(tree.state(node), &q));
+                let least = (0..tree.len()).map(|i| space.distance(tree.state(i), &q));
+                assert!(distance <= least.fold(f64::INFINITY, f64::min) + 1e-5);
+            }
+            let gone = 1 + rng.below(tree.len() - 1);
+            let state = tree.state(gone).to_vec();
+            let before = tree.len();
+            tree.prune(gone);
+            assert!(tree.len() < before);
+            assert!((0..tree.len()).all(|i| tree.state(i) != state && tree.parent(i) <= i));
+            if tree.len() < 100 {
+                break;
+            }
+        }
+    }
+
+    #[test]
+    fn pruning_keeps_the_ways_of_the_others() {
+        let space = Space::new(vec![Axis::bounded(0.0, 9.0)]);
+        let mut tree = Tree::new(&space);
+        tree.plant(&space, &[0.0]);
+        for (parent, x) in [(0, 1.0), (1, 2.0), (0, 3.0), (2, 4.0), (3, 5.0), (5, 6.0)] {
+            tree.push(&space, parent, &[x], x == 3.0);
+        }
+        tree.prune(2);
+        assert_eq!(tree.len(), 5);
+        assert_eq!(tree.to_root(4), [[6.0], [5.0], [3.0], [0.0]].map(|q| q.to_vec()));
+        assert_eq!(tree.first_unproven(4), Some(3));
+        assert_eq!(tree.first_unproven(2), None);
     }
 }

@@ -26,6 +26,7 @@ pub(super) struct Net<'a> {
     planes: Vec<Plane>,
     /// Largest distance that a ball may stand out of the part, metres.
     slack: f64,
+    /// By x: a ball looks at those beside it only.
     cells: Vec<Cell>,
 }
 
@@ -39,9 +40,8 @@ struct Cell {
 }
 
 impl<'a> Net<'a> {
-    /// Cells that contain all of the part; `overshoot` is a fraction of its radius.
-    pub(super) fn of(part: &'a ConvexPart, overshoot: f64) -> Self {
-        let slack = overshoot * part.bounding_sphere().1;
+    /// Cells that contain all of the part; balls may stand out of it by `slack` metres.
+    pub(super) fn of(part: &'a ConvexPart, slack: f64) -> Self {
         let bounds = part.bounds();
         let mut net = Self { part, planes: coarse(part.planes()), slack, cells: Vec::new() };
         // Cubes about as wide as the thinnest side, so that flat parts are not filled with needles.
@@ -57,7 +57,15 @@ impl<'a> Net<'a> {
                 }
             }
         }
+        net.cells.sort_by(|a, b| a.centre.x.total_cmp(&b.centre.x));
         net
+    }
+
+    /// Positions of cells whose middles are not beside a ball along x.
+    fn beside(&self, ball: &(Point3<f64>, f64)) -> std::ops::Range<usize> {
+        let first = self.cells.partition_point(|cell| cell.centre.x < ball.0.x - ball.1);
+        let rest = &self.cells[first..];
+        first..first + rest.partition_point(|cell| cell.centre.x <= ball.0.x + ball.1)
     }
 
     /// Largest height of a point over the faces.
@@ -117,8 +125,9 @@ impl<'a> Net<'a> {
         order.sort_by(|&a, &b| balls[a].1.total_cmp(&balls[b].1).then(a.cmp(&b)));
         let mut kept = vec![true; balls.len()];
         for ball in order {
-            let needed =
-                self.cells.iter().zip(&covered).any(|(cell, &n)| n == 1 && holds(&balls[ball], cell));
+            let beside = self.beside(&balls[ball]);
+            let mut cells = self.cells[beside.clone()].iter().zip(&covered[beside]);
+            let needed = cells.any(|(cell, &n)| n == 1 && holds(&balls[ball], cell));
             if !needed {
                 self.count(&balls[ball], &mut covered, |n| n - 1);
                 kept[ball] = false;
@@ -129,7 +138,8 @@ impl<'a> Net<'a> {
     }
 
     fn count(&self, ball: &(Point3<f64>, f64), covered: &mut [u32], change: impl Fn(u32) -> u32) {
-        for (cell, n) in self.cells.iter().zip(covered) {
+        let beside = self.beside(ball);
+        for (cell, n) in self.cells[beside.clone()].iter().zip(&mut covered[beside]) {
             if holds(ball, cell) {
                 *n = change(*n);
             }
@@ -197,7 +207,9 @@ impl<'a> Net<'a> {
         balls.truncate(TRIED);
         balls.push(own);
         let gain = |ball: &(Point3<f64>, f64)| {
-            self.cells.iter().zip(covered).filter(|&(cell, &n)| n == 0 && holds(ball, cell)).count()
+            let beside = self.beside(ball);
+            let cells = self.cells[beside.clone()].iter().zip(&covered[beside]);
+            cells.filter(|&(cell, &n)| n == 0 && holds(ball, cell)).count()
         };
         let mut best = (own, 0);
         for ball in balls {
