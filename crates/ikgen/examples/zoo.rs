@@ -13,7 +13,7 @@ use robotc_core::system::{ReadError, System};
 use robotc_core::urdf::{LoadOptions, MeshPolicy, load};
 use robotc_core::{Kinematics, SerialChain, Sources};
 use robotc_ikgen::report::{ProofOptions, Report, SetReport, prove};
-use robotc_ikgen::{Options, compile};
+use robotc_ikgen::{GoalType, Options, compile};
 
 struct Files;
 
@@ -66,7 +66,9 @@ fn arm(chain: &SerialChain, poses: usize, options: &[String]) -> Report {
     let result = compile(chain, &Options { tolerance, ..Options::default() });
     let seconds = now();
     let (report, trace, program) = match &result {
-        Err(refusal) => (Report::refused(refusal, seconds), &refusal.trace, String::new()),
+        Err(refusal) => {
+            (Report::refused(refusal, GoalType::default(), seconds), &refusal.trace, String::new())
+        }
         Ok(compiled) => {
             let report = prove(compiled, seconds, &ProofOptions { poses, seed: 1 }, &now);
             (report, &compiled.trace, compiled.text())

@@ -85,7 +85,7 @@ fn goal_type(name: &str) -> Result<Goal, String> {
         return Ok(Goal::Auto);
     }
     let known = GoalType::ALL.map(GoalType::name);
-    GoalType::from_name(name).map(Goal::Type).ok_or_else(|| match diag::nearest(name, known.into_iter()) {
+    GoalType::from_name(name).map(Goal::Type).ok_or_else(|| match diag::nearest(name, known) {
         Some(near) => format!("did you mean {near}?"),
         None => format!("there are auto, {}", known.join(", ")),
     })

@@ -1,7 +1,9 @@
 //! What a planner or a map needs of an inverse-kinematics solver, whoever made it.
 
+mod families;
 mod preferences;
 
+pub use families::{FamilyPath, IkFamily};
 pub use preferences::{Aliases, Limits, PreferenceError, Preferences, VariableRange};
 
 use crate::Pose;
@@ -13,6 +15,7 @@ use crate::Pose;
 pub struct IkSolutions {
     width: usize,
     values: Vec<f64>,
+    families: Vec<IkFamily>,
 }
 
 impl IkSolutions {
@@ -25,6 +28,7 @@ impl IkSolutions {
     pub fn reset(&mut self, width: usize) {
         self.width = width;
         self.values.clear();
+        self.families.clear();
     }
 
     /// Adds one solution; `joints` has the width given to [`reset`](Self::reset).
@@ -38,12 +42,22 @@ impl IkSolutions {
         self.values.len().checked_div(self.width).unwrap_or(0)
     }
 
+    /// The continua among the solutions; empty unless the solver was asked for them.
+    pub fn families(&self) -> &[IkFamily] {
+        &self.families
+    }
+
+    /// Adds a continuum through one of the solutions.
+    pub fn push_family(&mut self, family: IkFamily) {
+        self.families.push(family);
+    }
+
     /// Keeps the first `count` solutions.
     pub fn truncate(&mut self, count: usize) {
         self.values.truncate(count.saturating_mul(self.width));
     }
 
-    /// Puts the solutions in ascending order of `cost`; those of equal cost stay in their order.
+    /// Puts the solutions in ascending order of `cost`; those of equal cost stay in their order. There must be no families.
     pub fn sort_by_cost(&mut self, cost: impl Fn(&[f64]) -> f64) {
         let mut order: Vec<(f64, &[f64])> = self.iter().map(|q| (cost(q), q)).collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -71,7 +71,7 @@ impl VariableRange {
             return self.within(value);
         }
         let (first, last) = self.turns_within(value);
-        if !(first <= last) {
+        if last < first || value.is_nan() {
             return None;
         }
         // Of aliases in order the nearest is that whose number of turns is nearest.
@@ -191,7 +191,7 @@ impl Preferences {
             Limits::Ignored => Ok(described.iter().map(|r| r.unlimited()).collect()),
             Limits::Given(limits) => {
                 length("limits", limits.len())?;
-                if limits.iter().any(|[low, high]| !(low <= high)) {
+                if limits.iter().any(|[low, high]| low.is_nan() || high.is_nan() || low > high) {
                     return Err(PreferenceError::Value("limits"));
                 }
                 let pairs = described.iter().zip(limits);

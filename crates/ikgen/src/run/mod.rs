@@ -2,6 +2,7 @@
 //! that checks and polishes what either finds.
 
 pub mod bytecode;
+mod families;
 pub mod interpreter;
 mod lanes;
 mod redundancy;

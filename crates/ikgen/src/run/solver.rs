@@ -50,9 +50,9 @@ pub enum LoadError {
 pub struct Solver {
     program: Program,
     code: Bytecode,
-    chain: TrueChain,
+    pub(super) chain: TrueChain,
     engine: Engine,
-    held: [bool; MAX_JOINTS],
+    pub(super) held: [bool; MAX_JOINTS],
     ranges: Vec<VariableRange>,
     /// Smallest values of the joints that the goal type adds.
     least: [f64; MAX_JOINTS],
@@ -117,7 +117,8 @@ impl Solver {
     }
 
     /// The solutions for a pose that are wanted, in the wanted order: within limits, nearest to a seed first, no more than so many.
-    /// Otherwise as [`solve`](InverseKinematics::solve).
+    /// Otherwise as [`solve`](InverseKinematics::solve). Where solutions are a continuum whose representative is outside of the limits,
+    /// a member inside of them is returned; with a seed also the member nearest to it.
     pub fn solve_preferred(
         &self,
         base_from_tip: &Pose,
@@ -129,7 +130,14 @@ impl Solver {
         out.reset(self.ranges.len());
         let mut all = IkSolutions::new();
         self.solve_until(base_from_tip, free, &mut all, &mut |solution| {
-            preferences.offer(&ranges, solution, out);
+            let kept = preferences.offer(&ranges, solution, out);
+            // Where axes have lined up another member of the family may do what the representative does not.
+            if (!kept || preferences.near.is_some())
+                && self.is_singular(solution)
+                && let Some(member) = self.member_within(base_from_tip, solution, &ranges, preferences)
+            {
+                preferences.offer(&ranges, &member, out);
+            }
             preferences.is_enough(out)
         });
         preferences.finish(&ranges, out);

@@ -8,6 +8,9 @@
 //!
 //! The general solver of six joints is not made of equations with one unknown: with it only points can be tried, and the result says so.
 
+// `!(x < y)` is meant: a NaN must count as too large.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
+
 mod bounds;
 mod interval;
 mod trigonometric;
