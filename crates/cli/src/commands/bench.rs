@@ -31,6 +31,7 @@ enum What {
     Caging(bench_tasks::Caging),
     Checks(Checks),
     Motion(Motion),
+    Placement(bench_tasks::Placement),
     Weights(bench_tasks::Weights),
 }
 
@@ -85,6 +86,7 @@ pub(crate) fn run(args: &Bench) -> Outcome {
     match &args.what {
         What::Bispace(args) => bench_tasks::bispace(args),
         What::Caging(args) => bench_tasks::caging(args),
+        What::Placement(args) => bench_tasks::placement(args),
         What::Weights(args) => bench_tasks::weights(args),
         What::Checks(args) => checks(args),
         What::Motion(args) => motion(args),

@@ -21,7 +21,7 @@ use crate::progress::Progress;
 #[command(
     after_help = "Example:\n  robotc bench caging cabinet.task.toml --places 9 --report caging.json\n\n\
     The article of each goal to open is put all around the robot, with nothing else in the way. Counted is from where it can be \
-    opened when any one grip is kept, and when grips may change within the cage."
+    opened when any one firm grip is kept, and when loose grips may change within the cage; all end in contact."
 )]
 pub(super) struct Caging {
     /// A `*.task.toml` file with goals to open
@@ -60,6 +60,24 @@ pub(super) struct BiSpace {
     /// Seconds after which a run starts again
     #[arg(long, value_name = "SECONDS", default_value_t = MobileBenchOptions::default().restart)]
     restart: f64,
+    /// File for all figures
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+    #[command(flatten)]
+    store: StoreArgs,
+}
+
+/// Compare two ways to find a first place to stand for an arm on wheels: inverse reachability, and anywhere within reach
+#[derive(Args)]
+#[command(
+    after_help = "Example:\n  robotc bench placement shelf.task.toml --seeds 16 --report placement.json"
+)]
+pub(super) struct Placement {
+    /// A `*.task.toml` file
+    task: PathBuf,
+    /// Runs of each
+    #[arg(long, value_name = "K", default_value_t = MobileBenchOptions::default().seeds)]
+    seeds: u64,
     /// File for all figures
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
@@ -170,6 +188,28 @@ pub(super) fn bispace(args: &BiSpace) -> Outcome {
             s.search, s.solved, s.mean_s, s.median_s, s.states
         ));
     }
+    write(args.report.as_deref(), &report)
+}
+
+pub(super) fn placement(args: &Placement) -> Outcome {
+    let session = open(&args.task, &args.store)?;
+    let (clock, planner) = (Instant::now(), session.options());
+    let now = || clock.elapsed().as_secs_f64();
+    let options = MobileBenchOptions { seeds: args.seeds, ..MobileBenchOptions::default() };
+    let report = session.with_problem(|p| bench::measure_placement(p, &planner, &options, &now));
+    let report = report.ok_or_else(|| Failure::Input("no grasp of the object is free".into()))?;
+    print(&format!(
+        "{}: {} grasps, {} runs, samples drawn in {:.0} ms",
+        report.scene, report.grasps, args.seeds, report.prepare_ms
+    ));
+    print("bases    solved  median ms  mean ms  places");
+    for b in &report.bases {
+        print(&format!(
+            "{:8} {:6} {:10.2} {:8.2} {:7.1}",
+            b.bases, b.solved, b.median_ms, b.mean_ms, b.places
+        ));
+    }
+    print(&format!("{:.1} times as fast", report.times_faster));
     write(args.report.as_deref(), &report)
 }
 

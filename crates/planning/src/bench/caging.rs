@@ -7,10 +7,7 @@ use robotc_core::{BodyIdx, DofIdx, Pose, Seed};
 use serde::Serialize;
 
 use crate::budget::{Budget, Interrupt};
-use crate::caging::{
-    Cage, CageGrasp, CageStart, CagedObject, FixedGrasp, RandomizedOptions, discrete_search,
-    randomized_search,
-};
+use crate::caging::{Cage, CageGrasp, CagedObject, FixedGrasp, discrete_search, restarted_search};
 use crate::manipulation::{
     Manipulation, ManipulationOptions, article_steps, finger_space, gripper_links, with_fingers_space,
 };
@@ -60,7 +57,7 @@ pub struct CagingPlace {
     pub y: f64,
     /// Its heading, radians.
     pub yaw: f64,
-    /// Every grip tried, none changed.
+    /// Every grip in contact tried, none changed.
     pub firm: Attempt,
     /// The exhaustive search; for arms without free joints.
     pub discrete: Option<Attempt>,
@@ -221,23 +218,9 @@ fn try_place(
         Attempt { opened, stopped: !opened && seconds > options.seconds, seconds }
     };
     let randomized = timed(&mut |budget| {
-        let (draws, mut seed) = (planner.caging_search.max_draws, Seed::new(options.seed));
-        // Restarts, each with more draws than the one before: the times of these searches have long tails.
-        let mut limit = 2000;
-        loop {
-            let search = RandomizedOptions { max_draws: limit.min(draws), ..planner.caging_search };
-            let rng = &mut seed.rng();
-            match randomized_search(&mut caged, &CageStart::Step(0), &search, budget, rng) {
-                Ok(_) => return true,
-                Err(failure) if failure.reason != crate::caging::CagingFailureReason::Iterations => {
-                    return false;
-                }
-                Err(_) if limit >= draws => return false,
-                Err(_) => (limit, seed) = (2 * limit, seed.at(1)),
-            }
-        }
+        restarted_search(&mut caged, &planner.caging_search, budget, Seed::new(options.seed)).is_ok()
     });
-    let firm = timed(&mut |budget| discrete_search(&mut FixedGrasp::new(&mut caged), budget).is_ok());
+    let firm = timed(&mut |budget| discrete_search(&mut FixedGrasp::firm(&mut caged), budget).is_ok());
     let discrete = (problem.arm.free_variables().is_empty())
         .then(|| timed(&mut |budget| discrete_search(&mut caged, budget).is_ok()));
     Some(CagingPlace { x, y, yaw, firm, discrete, randomized })

@@ -260,7 +260,12 @@ impl<'a> Hand<'a> {
     }
 
     /// Poses backed off from grasps, where the gripper is free.
-    pub(super) fn goals(&self, problem: &Manipulation<'_>, options: &MobileBenchOptions, back: f64) -> Vec<Pose> {
+    pub(super) fn goals(
+        &self,
+        problem: &Manipulation<'_>,
+        options: &MobileBenchOptions,
+        back: f64,
+    ) -> Vec<Pose> {
         let world_from_object = self.scene.world_from_body(BodyIdx::new(options.object));
         let grasps = problem.grasps[options.object].grasps.iter();
         let poses = grasps.map(|grasp| world_from_object * grasp.object_from_backed_off(back));

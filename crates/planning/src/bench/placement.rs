@@ -64,7 +64,8 @@ pub fn measure_placement(
     }
     let arm = at_origin(problem);
     let began = now();
-    let samples = InverseSamples::of_arms(&[&arm], &InverseSamplesOptions::default(), &mut Seed::new(1).rng());
+    let samples =
+        InverseSamples::of_arms(&[&arm], &InverseSamplesOptions::default(), &mut Seed::new(1).rng());
     let prepare_ms = 1e3 * (now() - began);
     let [_, floor] = start_and_floor(problem, options);
     let floor = ([floor[0], floor[1]], [floor[2], floor[3]]);
@@ -153,7 +154,8 @@ impl PlacementProblem for Cell<'_> {
         let world_from_base = Pose::from_parts(Translation3::new(base[0], base[1], 0.0), turn);
         let free: Vec<f64> = self.arm.free_variables().iter().map(|&v| self.rest[v]).collect();
         let scratch = &mut IkSolutions::new();
-        let (found, _) = self.arm.inverse(&world_from_base.inv_mul(world_from_tool), &free, &self.rest, scratch);
+        let (found, _) =
+            self.arm.inverse(&world_from_base.inv_mul(world_from_tool), &free, &self.rest, scratch);
         found.into_iter().map(|q| [&base[..], &q].concat()).collect()
     }
 

@@ -4,17 +4,24 @@ use super::task::{ArticulatedTask, CagedState};
 use crate::edge::Obstruction;
 use crate::space::Space;
 
-/// A task in which the grasp never changes. Every grasp is taken to be in contact, so that all of them are tried.
+/// A task in which the grasp never changes.
 pub struct FixedGrasp<'t, T: ?Sized> {
     task: &'t mut T,
+    /// Whether every grasp counts as one in contact.
+    all: bool,
     own: Vec<[usize; 1]>,
 }
 
 impl<'t, T: ArticulatedTask + ?Sized> FixedGrasp<'t, T> {
-    /// The same task without changes of grasp.
+    /// The same task without changes of grasp. Every grasp is taken to be in contact, so that all of them are tried.
     pub fn new(task: &'t mut T) -> Self {
         let own = (0..task.grasps()).map(|g| [g]).collect();
-        Self { task, own }
+        Self { task, all: true, own }
+    }
+
+    /// The same task without changes of grasp, in grasps alone that are in contact: those that hold firmly.
+    pub fn firm(task: &'t mut T) -> Self {
+        Self { all: false, ..Self::new(task) }
     }
 }
 
@@ -31,8 +38,8 @@ impl<T: ArticulatedTask + ?Sized> ArticulatedTask for FixedGrasp<'_, T> {
         self.task.grasps()
     }
 
-    fn is_contact(&self, _: usize) -> bool {
-        true
+    fn is_contact(&self, grasp: usize) -> bool {
+        self.all || self.task.is_contact(grasp)
     }
 
     fn adjacent(&self, grasp: usize) -> &[usize] {
@@ -40,6 +47,9 @@ impl<T: ArticulatedTask + ?Sized> ArticulatedTask for FixedGrasp<'_, T> {
     }
 
     fn solutions(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
+        if !self.is_contact(grasp) {
+            return vec![];
+        }
         self.task.solutions(step, grasp, near)
     }
 

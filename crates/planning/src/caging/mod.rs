@@ -15,6 +15,7 @@ mod discrete;
 mod fixed;
 mod object;
 mod randomized;
+mod restarts;
 mod switch;
 mod task;
 #[cfg(test)]
@@ -25,6 +26,7 @@ pub use discrete::discrete_search;
 pub use fixed::FixedGrasp;
 pub use object::{CageGrasp, CagedObject, CagedObjectError, CagedObjectOptions, ObjectStep};
 pub use randomized::{CageStart, RandomizedOptions, randomized_search};
+pub use restarts::restarted_search;
 pub use switch::{CageStage, CageSwitchFailure, open_with_sets};
 pub use task::{
     ArticulatedTask, CagedState, CagingFailure, CagingFailureReason, CagingSolution, CagingStatistics,

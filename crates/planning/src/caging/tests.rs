@@ -111,6 +111,14 @@ fn a_cage_leaves_room_that_a_firm_grasp_has_not() {
         let found = randomized(&mut door, seed).unwrap_or_else(|e| panic!("{e}"));
         check(&mut door, &found.states);
     }
+    for seed in (0..4).map(Seed::new) {
+        let options = RandomizedOptions::default();
+        let search = |door: &mut PlanarDoor| restarted_search(door, &options, &Budget::unlimited(), seed);
+        let found = search(&mut door).unwrap_or_else(|e| panic!("{e}"));
+        check(&mut door, &found.states);
+        assert_eq!(search(&mut door), Ok(found));
+    }
+    assert!(discrete_search(&mut FixedGrasp::firm(&mut door), &Budget::unlimited()).is_err());
     let fixed = discrete_search(&mut FixedGrasp::new(&mut door), &Budget::unlimited()).unwrap_err();
     assert_eq!(fixed.reason, CagingFailureReason::NoPath);
     assert!(randomized(&mut FixedGrasp::new(&mut door), 1).is_err());
