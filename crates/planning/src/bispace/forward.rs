@@ -38,6 +38,11 @@ impl<'g, P: Clone> Forward<'g, P> {
         forward
     }
 
+    /// The goals of the tool.
+    pub(super) fn goals(&self) -> &'g [P] {
+        self.goals
+    }
+
     pub(super) fn push<W: Workspace<Point = P> + ?Sized>(
         &mut self,
         workspace: &W,

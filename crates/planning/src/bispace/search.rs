@@ -41,6 +41,9 @@ pub struct BiSpaceOptions {
     pub follow: FollowOptions,
     /// The search for the arm's way to a solution of inverse kinematics at the end of following; `None` leaves it out.
     pub inverse: Option<RrtOptions>,
+    /// Attempts in a round to connect the tree of configurations with a sampled configuration at a goal. The thesis has none: they cost
+    /// little, and where goal configurations are easy to sample nothing is faster.
+    pub heads: u32,
     /// Extensions of the tree of configurations after which the search gives up.
     pub max_iterations: u32,
 }
@@ -59,6 +62,7 @@ impl Default for BiSpaceOptions {
             probability: FollowProbability::Constant(1.0),
             follow: FollowOptions::default(),
             inverse: Some(RrtOptions { max_iterations: 200, ..RrtOptions::default() }),
+            heads: 4,
             max_iterations: 5000,
         }
     }
@@ -147,6 +151,12 @@ impl<W: Workspace + ?Sized> Search<'_, W> {
             return Ok(reached);
         }
         loop {
+            for _ in 0..options.heads {
+                budget.check().map_err(ToolFailureReason::Interrupted)?;
+                if let Some(reached) = self.head_for_a_goal(checker, rng) {
+                    return Ok(reached);
+                }
+            }
             for _ in 0..options.backward {
                 budget.check().map_err(ToolFailureReason::Interrupted)?;
                 let mut supported = |workspace: &mut W, point: &W::Point, rng: &mut Rng| {
@@ -184,6 +194,36 @@ impl<W: Workspace + ?Sized> Search<'_, W> {
                 {
                     return Ok(reached);
                 }
+            }
+        }
+    }
+
+    /// Samples a free configuration at a goal, and goes from the nearest node straight towards it as far as that is free.
+    fn head_for_a_goal<C: EdgeChecker + ?Sized>(
+        &mut self,
+        checker: &mut C,
+        rng: &mut Rng,
+    ) -> Option<Reached> {
+        self.statistics.inverse_tests += 1;
+        let goal = rng.below(self.forward.goals().len());
+        let point = self.forward.goals()[goal].clone();
+        let sample = self.workspace.sample_near(checker.space(), &point, rng);
+        let solutions = self.workspace.solutions(&sample, &point);
+        let end = solutions.into_iter().find(|q| checker.state(q).is_ok())?;
+        let space = checker.space().clone();
+        let step = self.options.step * space.diameter();
+        let mut node = self.forward.tree.nearest_by(|_, q| space.distance(q, &end));
+        loop {
+            let from = self.forward.tree.state(node).to_vec();
+            let length = space.distance(&from, &end);
+            let next =
+                if length > step { space.interpolate(&from, &end, step / length) } else { end.clone() };
+            if !self.forward.is_free(checker, &from, &next) {
+                return None;
+            }
+            node = self.forward.push(&*self.workspace, node, &next);
+            if length <= step {
+                return Some(Reached { node, goal, rest: vec![] });
             }
         }
     }

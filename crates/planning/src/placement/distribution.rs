@@ -98,7 +98,13 @@ impl InverseSamples {
                 weight: (&jacobian * jacobian.transpose()).determinant().max(0.0).sqrt(),
             }
         };
-        let arms = arms.iter().map(|arm| (0..options.count).map(|_| sample(arm, rng)).collect()).collect();
+        let of_arm = |arm: &&ArmModel| {
+            let mut samples: Vec<Sample> = (0..options.count).map(|_| sample(arm, rng)).collect();
+            // Those that serve a pose are a range of heights.
+            samples.sort_by(|a, b| a.height.total_cmp(&b.height));
+            samples
+        };
+        let arms = arms.iter().map(of_arm).collect();
         Self { options: *options, arms, last: Vec::new() }
     }
 
@@ -108,14 +114,13 @@ impl InverseSamples {
         let entry = known.unwrap_or_else(|| {
             let up = UnitVector3::new_normalize(world_from_tool.rotation.inverse() * Vector3::z());
             let least = libm::cos(self.options.tilt);
-            let serves = |sample: &Sample| {
-                (sample.height - world_from_tool.translation.z).abs() <= self.options.height
-                    && sample.up_in_tool.dot(&up) >= least
-            };
+            let (samples, height) = (&self.arms[arm], world_from_tool.translation.z);
+            let first = samples.partition_point(|s| s.height < height - self.options.height);
+            let end = samples.partition_point(|s| s.height <= height + self.options.height);
             let mut sum = 0.0;
             let mut found = Vec::new();
-            for (i, sample) in self.arms[arm].iter().enumerate() {
-                if serves(sample) && sample.weight > 0.0 {
+            for (i, sample) in samples.iter().enumerate().take(end).skip(first) {
+                if sample.weight > 0.0 && sample.up_in_tool.dot(&up) >= least {
                     sum += sample.weight;
                     found.push((i, sum));
                 }
