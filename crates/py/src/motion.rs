@@ -99,7 +99,7 @@ pub(crate) fn plan_motion(
         let interrupt = || {
             let elapsed = start.elapsed().as_secs_f64();
             if let Some(progress) = progress
-                && calls.fetch_add(1, Ordering::Relaxed) % EVERY == 0
+                && calls.fetch_add(1, Ordering::Relaxed).is_multiple_of(EVERY)
                 && Python::attach(|py| told(py, progress, elapsed, interrupts))
             {
                 return Some(Interrupt::Cancelled);
