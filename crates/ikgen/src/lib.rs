@@ -57,7 +57,8 @@
 //! candidate. Since every later equation is solved for the value taken, the representative is an exact solution.
 //!
 //! **Slack.** An equation whose roots have just disappeared (an arm stretched to its edge) is taken where it comes nearest:
-//! within 1e-9, or within what the ideal chain of the program may differ from the described one.
+//! within 1e-9, or within what the ideal chain of the program may differ from the described one. `six` is written for the described
+//! chain, and has none of the latter.
 //!
 //! **Solutions.** A candidate is *accepted* if it reaches the pose on the *true chain* to 1e-9 (metres, and Frobenius norm of the
 //! rotation difference). The true chain is not part of the program but given at load: the described arm, or a calibrated one. A

@@ -62,6 +62,7 @@ pub fn c_source(program: &Program, chain: &TrueChain, name: &str) -> Result<CSou
     if !starts || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
         return Err(CError::Name(name.into()));
     }
+    let program = &Program { body: without_general_rest(&program.body), ..program.clone() };
     if program.uses(RootKind::Six) || program.uses(RootKind::Octic) {
         return Err(CError::Six);
     }
@@ -69,6 +70,16 @@ pub fn c_source(program: &Program, chain: &TrueChain, name: &str) -> Result<CSou
     let mut body = String::new();
     block(program, &program.body, 1, &mut 0, &mut body);
     Ok(CSource { header: header(program, chain, name), source: source(program, chain, name, &body) })
+}
+
+/// The statements without what the general solver of six joints does where the others give nothing: it has no C form yet.
+fn without_general_rest(block: &Block) -> Block {
+    let general = |stmt: &Stmt| matches!(stmt, Stmt::ForEach { kind: RootKind::Six, .. });
+    let each = |stmt: &Stmt| match stmt {
+        Stmt::Fallback { first, otherwise } if otherwise.iter().any(general) => without_general_rest(first),
+        other => vec![other.clone()],
+    };
+    block.iter().flat_map(each).collect()
 }
 
 fn about(program: &Program) -> String {

@@ -348,8 +348,9 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                     names.push("_");
                 }
                 let six = *kind == RootKind::Six;
-                let call = if six { "six_of" } else { kind.word() };
-                let _ = writeln!(out, "{pad}let roots{k} = {call}({}, slack);", args.join(", "));
+                // Six joints in general are solved as they are described.
+                let (call, slack) = if six { ("six_of", "slack - SLACK") } else { (kind.word(), "slack") };
+                let _ = writeln!(out, "{pad}let roots{k} = {call}({}, {slack});", args.join(", "));
                 let _ = writeln!(out, "{pad}let before{k} = sink.accepted;");
                 let _ = writeln!(out, "{pad}for i in 0..roots{k}.count() {{");
                 let _ = writeln!(

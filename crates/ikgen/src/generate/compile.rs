@@ -13,7 +13,6 @@ use crate::GoalType;
 use crate::check;
 use crate::ir::Program;
 use crate::passes;
-use crate::report::RECOVERED;
 use crate::report::poses::{sets, slides};
 use crate::run::Solver;
 
@@ -22,6 +21,13 @@ const ROUNDING: f64 = 1e-8;
 
 /// Tolerance within which a chain counts as solved just as it is described.
 const EXACT: f64 = 1e-9;
+
+/// A joint vector is lost when no answer is this near to it: a branch is missing. By chance some random poses are so near to a singular
+/// one that rounding of the pose moves the answer by more than proofs allow.
+const BRANCH: f64 = 1e-3;
+
+/// How many times as many trial poses a program of a snapped chain has to solve.
+const SNAPPED: usize = 4;
 
 /// Choices of a compilation.
 #[derive(Debug, Clone, PartialEq)]
@@ -158,12 +164,24 @@ fn search(
     let allowed = ladder.into_iter().filter(|t| *t <= options.tolerance.max(1e-9));
     for tolerance in allowed {
         for free in &choices {
-            match attempt(chain, options, free, tolerance, strategies::SPECIAL, &letters, trace) {
+            let special = |rest, trace: &mut Vec<String>| {
+                attempt(chain, options, free, tolerance, strategies::SPECIAL, rest, &letters, trace)
+            };
+            match special(false, trace) {
                 Ok(found) if found.lost == 0 => return Ok((found.program, found.class)),
                 Ok(found) => {
-                    if best.as_ref().is_none_or(|b| found.lost < b.lost) {
-                        best = Some(found);
+                    // A simpler ideal chain might lose less, but not less than the general solver on the described one leaves.
+                    if options.goal == GoalType::default()
+                        && best.as_ref().is_none_or(|b| found.lost < b.lost)
+                        && let Ok(whole) = special(true, trace)
+                        && whole.lost < found.lost
+                    {
+                        if whole.lost == 0 {
+                            return Ok((whole.program, whole.class));
+                        }
+                        keep_better(&mut best, whole);
                     }
+                    keep_better(&mut best, found);
                     // Other free joints would not be better, a simpler ideal chain might.
                     break;
                 }
@@ -182,11 +200,7 @@ fn search(
     for tolerance in allowed.collect::<Vec<_>>() {
         for free in &choices {
             match one_by_one(chain, options, free, tolerance, &letters, trace) {
-                Ok(found) => {
-                    if best.as_ref().is_none_or(|b| found.lost < b.lost) {
-                        best = Some(found);
-                    }
-                }
+                Ok(found) => keep_better(&mut best, found),
                 Err(Some(reason)) => failure = Some(reason),
                 Err(None) => {}
             }
@@ -195,14 +209,12 @@ fn search(
             break;
         }
     }
-    if best.is_none() {
+    if best.as_ref().is_none_or(|b| b.lost > 0 && options.goal == GoalType::default()) {
         // As it is described: nothing needs to be ideal.
         for free in &choices {
-            match attempt(chain, options, free, EXACT, strategies::GENERAL, &letters, trace) {
+            match attempt(chain, options, free, EXACT, strategies::GENERAL, false, &letters, trace) {
                 Ok(found) => {
-                    if best.as_ref().is_none_or(|b| found.lost < b.lost) {
-                        best = Some(found);
-                    }
+                    keep_better(&mut best, found);
                     if best.as_ref().is_some_and(|b| b.lost == 0) {
                         break;
                     }
@@ -218,6 +230,12 @@ fn search(
     }
 }
 
+fn keep_better(best: &mut Option<Found>, found: Found) {
+    if best.as_ref().is_none_or(|b| found.lost < b.lost) {
+        *best = Some(found);
+    }
+}
+
 /// A program that solves all random trial poses.
 struct Found {
     program: Program,
@@ -227,16 +245,25 @@ struct Found {
 }
 
 /// One tolerance and one choice of free variables. An error carries the reason why a program that was found is no good.
+///
+/// With `rest` poses at which the ideal chain gives nothing go to the general solver of six joints, on the chain as it is described.
 fn attempt(
     chain: &SerialChain,
     options: &Options,
     free: &[usize],
     tolerance: f64,
     strategies: &[Strategy],
+    rest: bool,
     letters: &str,
     trace: &mut Vec<String>,
 ) -> Result<Found, Option<String>> {
     let facts = Facts::new(chain, tolerance).ok_or(None)?;
+    let described = if rest {
+        let described = Facts::new(chain, EXACT).and_then(|facts| Problem::new(&facts, free));
+        Some(described.filter(|problem| problem.axes.len() == 6).ok_or(None)?)
+    } else {
+        None
+    };
     let Some(problem) = Problem::new(&facts, free) else {
         trace.push(format!("free {free:?}: given joints in more than one place between unknown ones"));
         return Err(None);
@@ -257,7 +284,11 @@ fn attempt(
                 if reversed { " from the tip" } else { "" }
             );
             let builder = Builder::new(options.goal, chain.variables.len(), free.to_vec());
-            match write(&mut problem, &builder) {
+            let written = match &described {
+                None => write(&mut problem, &builder),
+                Some(described) => with_rest(*write, &mut problem, &mut described.clone(), &builder),
+            };
+            match written {
                 Err(reason) => line += &reason,
                 Ok(how) => {
                     let how = if whole < 6 { format!("{how}, completed to 6R") } else { how };
@@ -279,6 +310,29 @@ fn attempt(
         }
     }
     Err(failure)
+}
+
+/// A special strategy, and the general one for where it gives nothing.
+fn with_rest(
+    write: fn(&mut Problem, &Builder) -> Result<String, String>,
+    ideal: &mut Problem,
+    described: &mut Problem,
+    b: &Builder,
+) -> Result<String, String> {
+    let (mut how, mut rest) = (Ok(String::new()), Ok(String::new()));
+    b.fallback(
+        || how = write(ideal, b),
+        || {
+            b.note("where that gives nothing: six joints in general, as they are described");
+            rest = strategies::GENERAL
+                .iter()
+                .map(|s| (s.write)(described, b))
+                .next()
+                .unwrap_or(Ok(String::new()));
+        },
+    );
+    rest?;
+    how.map(|how| how + ", the rest in general")
 }
 
 /// As [`attempt`], by equations with one unknown each.
@@ -324,26 +378,28 @@ fn finished(
     program.slack = if snap < ROUNDING { 0.0 } else { 4.0 * snap };
     program.class = class.clone();
     let program = passes::optimise(&program);
-    let lost = trial(&program, chain, options)?;
+    // A difference that can hide roots hides them rarely.
+    let poses = if program.slack > 0.0 { SNAPPED * options.trial_poses } else { options.trial_poses };
+    let lost = trial(&program, chain, poses)?;
     Ok(Found { program, class, lost })
 }
 
 /// Runs a program on random and singular poses: how many joint vectors of the former it did not recover and how many of
 /// the latter it did not solve, or why it is no good.
-fn trial(program: &Program, chain: &SerialChain, options: &Options) -> Result<usize, String> {
+fn trial(program: &Program, chain: &SerialChain, poses: usize) -> Result<usize, String> {
     program.validate().map_err(|e| format!("the program is not valid: {e}"))?;
     let solver = Solver::of_longer(program.clone(), chain).map_err(|e| e.to_string())?;
     let mut out = IkSolutions::new();
     let mut lost = 0;
     let slides = slides(chain);
     let seed = Seed::new(0).split("ikgen trial");
-    for set in sets(chain, &program.free, options.trial_poses, seed) {
+    for set in sets(chain, &program.free, poses, seed) {
         let mut solved = 0;
         for values in &set.vectors {
             let free: Vec<f64> = program.free.iter().map(|v| values[*v]).collect();
             solver.solve(&chain.forward(values), &free, &mut out);
             solved += usize::from(!out.is_empty());
-            let found = |other| check::same(other, values, &slides, RECOVERED);
+            let found = |other| check::same(other, values, &slides, BRANCH);
             lost += usize::from(set.regular && !out.is_empty() && !out.iter().any(found));
         }
         let missed = set.vectors.len() - solved;

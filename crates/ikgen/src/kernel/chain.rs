@@ -12,7 +12,7 @@ pub const TOLERANCE: f64 = 1e-9;
 pub const EXACT: f64 = 1e-10;
 
 /// Newton steps within which a polish must halve the distance that is left.
-const PATIENCE: usize = 8;
+const PATIENCE: usize = 20;
 
 /// A rigid transform: rotation rows, then position.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -61,16 +61,18 @@ impl<const N: usize> Roots<N> {
 }
 
 /// The angle whose cosine and sine are proportional to `x` and `y`.
+///
+/// These are products of two vectors that vanish together where the angle is free: up to there they tell it, however small they are.
 pub fn align(x: f64, y: f64, slack: f64) -> Roots<1> {
     let n = sqrt(x * x + y * y);
     if !(x.abs() + y.abs() < f64::INFINITY) {
         return Roots::NONE;
     }
-    if n < VANISHING {
+    if n < VANISHING * VANISHING {
         return Roots::ANY_ANGLE;
     }
     let mut roots = Roots::NONE;
-    roots.free = n < slack;
+    roots.free = n < VANISHING || n < slack;
     roots.push([x / n, y / n]);
     roots
 }

@@ -78,6 +78,8 @@ pub struct Bytecode {
     pub(super) first_constant: usize,
     pub(super) constants: Vec<f64>,
     pub(super) registers: usize,
+    /// Of the program: six joints in general are solved as they are described, without it.
+    slack: f64,
 }
 
 impl Bytecode {
@@ -122,6 +124,7 @@ impl Bytecode {
             first_constant,
             constants: t.constants.iter().map(|b| f64::from_bits(*b)).collect(),
             registers: t.high_water,
+            slack: program.slack,
         })
     }
 
@@ -228,7 +231,7 @@ impl Bytecode {
                     if !take(left, SIX_ROOTS) {
                         continue;
                     }
-                    let found = six_of(&args.map(|i| x[at(i)]), slack);
+                    let found = six_of(&args.map(|i| x[at(i)]), slack - self.slack);
                     for i in 0..found.count() {
                         for (to, value) in out.iter().zip(found.get(i).into_iter().flatten()) {
                             x[at(*to)] = value;

@@ -56,7 +56,7 @@ impl Run<'_> {
                     }
                     let args: Vec<f64> = args.iter().map(|e| self.value(*e)).collect();
                     let numbers = args.try_into().expect("validated");
-                    let found = six_of(&numbers, self.slack);
+                    let found = six_of(&numbers, self.slack - self.program.slack);
                     for i in 0..found.count() {
                         for (var, x) in out.iter().zip(found.get(i).into_iter().flatten()) {
                             self.vars[var.0 as usize] = x;

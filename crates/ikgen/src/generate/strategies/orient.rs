@@ -8,6 +8,9 @@ use nalgebra::Vector3;
 use crate::generate::builder::{Builder, Turn, Vector};
 use crate::generate::facts::tidy;
 
+/// Cosine of an angle, that between axes 4 and 6 at its least: above this the axes are taken to line up somewhere, if not exactly.
+const NEARLY_ALL: f64 = 0.999_99;
+
 /// The turns of three axes with these directions; `rotated` is the wanted rotation of a vector.
 pub(super) fn orient<'b>(
     b: &'b Builder,
@@ -44,7 +47,20 @@ pub(super) fn angle_between<'b>(
         let t = b.mirror(name, axis.dot(wanted), crossed.square().sqrt());
         return t.plus(Turn { cos: b.constant(cos), sin: b.constant(sin) });
     }
-    let still = b.constant(tidy(h4.dot(h5) * h5.dot(h6)));
+    let still = h4.dot(h5) * h5.dot(h6);
+    let swing = libm::hypot(cos, sin);
+    if swing > NEARLY_ALL {
+        // Differences of vectors keep the digits that cosines lose where the axes line up.
+        let fold = |side: f64| {
+            let turned = Turn { cos: b.constant(side * cos / swing), sin: b.constant(side * sin / swing) };
+            let nearest = b.vector(h6).turned(b.vector(h5), turned);
+            ((axis - wanted * b.constant(side)).square() - (axis - nearest * b.constant(side)).square())
+                * b.constant(0.5)
+        };
+        let t = b.mirror(name, axis.dot(wanted) - b.constant(still), (fold(1.0) * fold(-1.0)).sqrt());
+        return t.plus(Turn { cos: b.constant(cos / swing), sin: b.constant(sin / swing) });
+    }
+    let still = b.constant(tidy(still));
     b.circle(name, b.constant(cos), b.constant(sin), axis.dot(wanted) - still)
 }
 

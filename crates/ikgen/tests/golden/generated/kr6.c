@@ -206,11 +206,11 @@ static ik_roots ik_align(double x, double y, double slack)
     ik_roots roots = { { { 0.0, 0.0 } }, 0, 0 };
     double n = ik_sqrt(x * x + y * y);
     if (!ik_finite(x) || !ik_finite(y)) return roots;
-    if (n < IK_VANISHING) {
+    if (n < IK_VANISHING * IK_VANISHING) {
         roots.is_free = 1;
         return roots;
     }
-    roots.is_free = n < slack;
+    roots.is_free = n < IK_VANISHING || n < slack;
     ik_push(&roots, x / n, y / n);
     return roots;
 }
@@ -375,7 +375,7 @@ static double ik_polish(const ik_chain *chain, const ik_frame *pose, double valu
         if (best <= 0.5 * halved) {
             halved = best;
             since = 0;
-        } else if (since >= 8) {
+        } else if (since >= 20) {
             break;
         }
         for (i = 0; i < IK_VARIABLES; i++) {
