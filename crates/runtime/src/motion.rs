@@ -8,7 +8,7 @@ use robotc_planning::pose_goals::PoseGoals;
 use robotc_planning::problem::{PathFailureReason, PoseDocument, ProblemError, SolveFailure, Solved, solve};
 use robotc_planning::scene::{Grip, RobotChecker, Rules, Scene};
 use robotc_planning::{
-    Budget, Constraint, EdgeChecker, Interrupt, Obstruction, PlanningProblem, Registry, time_path,
+    Budget, Constraint, EdgeChecker, Interrupt, Obstruction, PlanningProblem, Registry, Space, time_path,
 };
 use thiserror::Error;
 
@@ -104,6 +104,7 @@ impl Session {
         budget: &Budget<'_>,
     ) -> Result<Motion, MotionError> {
         let situation = self.situation(problem)?;
+        let space = self.space_of(problem)?;
         let constraint = self.constraint(problem)?;
         let constraint = constraint.as_deref();
         let poses: Vec<Pose> = problem
@@ -111,8 +112,10 @@ impl Session {
             .iter()
             .map(|p| p.pose().ok_or(ProblemError::Pose("tool_goals")))
             .collect::<Result<_, _>>()?;
-        let mut checker = self.checker(&situation, problem, problem.margin, problem.resolution, constraint);
-        let for_goals = self.checker(&situation, problem, problem.margin, problem.resolution, constraint);
+        let mut checker =
+            self.checker(&situation, (problem, &space), problem.margin, problem.resolution, constraint);
+        let for_goals =
+            self.checker(&situation, (problem, &space), problem.margin, problem.resolution, constraint);
         let rng = problem.random_seed().split("goals").rng();
         let (arm, rounds) = (self.arm(), self.options().free_samples as usize);
         let mut goals = PoseGoals::new(arm, for_goals, &problem.goals, &poses, &problem.start, rounds, rng);
@@ -142,10 +145,11 @@ impl Session {
             return Err(ProblemError::Dimension { what, found, expected: width }.into());
         }
         let situation = self.situation(problem)?;
+        let space = self.space_of(problem)?;
         let constraint = self.constraint(problem)?;
         let step = self.options().certified_step;
         let mut checker =
-            self.checker(&situation, problem, 0.0, step, constraint.as_deref()).without_clearance();
+            self.checker(&situation, (problem, &space), 0.0, step, constraint.as_deref()).without_clearance();
         let Some(first) = path.first() else { return Ok(None) };
         if let Err(by) = checker.state(first) {
             return Ok(Some(self.first_contact(&situation, 0, 0.0, first.clone(), by)));
@@ -157,6 +161,15 @@ impl Session {
             }
         }
         Ok(None)
+    }
+
+    /// The space of the problem, whose limits and metric count, for the joints of the arm.
+    fn space_of(&self, problem: &PlanningProblem) -> Result<Space, ProblemError> {
+        let (found, expected) = (problem.axes.len(), self.arm().dofs().len());
+        if found != expected {
+            return Err(ProblemError::Dimension { what: "axes".into(), found, expected });
+        }
+        Ok(problem.space())
     }
 
     fn first_contact(
@@ -177,7 +190,7 @@ impl Session {
     fn checker<'s>(
         &'s self,
         situation: &'s Situation,
-        problem: &PlanningProblem,
+        (problem, space): (&PlanningProblem, &'s Space),
         margin: f64,
         resolution: f64,
         constraint: Option<&'s dyn Constraint>,
@@ -186,7 +199,7 @@ impl Session {
         let gripper = robot.arms[self.task().arm].gripper.map_or_else(Vec::new, |g| gripper_links(robot, g));
         let rules = Rules { margin, held: situation.held.clone(), gripper, ..Rules::default() };
         let (arm, scene) = (self.arm(), &situation.scene);
-        let checker = RobotChecker::new(scene, arm.space(), arm.dofs(), &situation.q, rules, resolution)
+        let checker = RobotChecker::new(scene, space, arm.dofs(), &situation.q, rules, resolution)
             .with_constraint(constraint);
         if problem.self_collisions { checker } else { checker.without_self_collisions() }
     }
