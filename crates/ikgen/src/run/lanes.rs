@@ -16,7 +16,7 @@ use crate::kernel::roots::{self, Roots};
 pub(super) const LANES: usize = 8;
 
 /// A register of each lane.
-type Wide = [f64; LANES];
+pub(super) type Wide = [f64; LANES];
 
 /// A set of lanes, a bit for each.
 type Mask = u8;
@@ -24,7 +24,7 @@ type Mask = u8;
 /// One run of the bytecode over a group of poses.
 pub(super) struct Run<'a, F: FnMut(usize, &[f64])> {
     code: &'a Bytecode,
-    x: Vec<Wide>,
+    x: &'a mut Vec<Wide>,
     slack: f64,
     /// Called with the lane and the values of each exact candidate.
     accept: F,
@@ -33,17 +33,18 @@ pub(super) struct Run<'a, F: FnMut(usize, &[f64])> {
 }
 
 impl<'a, F: FnMut(usize, &[f64])> Run<'a, F> {
-    /// A machine whose registers hold the constants.
-    pub(super) fn new(code: &'a Bytecode, slack: f64, accept: F) -> Self {
-        let mut x = vec![[0.0; LANES]; code.registers];
+    /// A machine with these registers, which then hold the constants.
+    pub(super) fn new(code: &'a Bytecode, x: &'a mut Vec<Wide>, slack: f64, accept: F) -> Self {
+        x.resize(code.registers, [0.0; LANES]);
         for (register, constant) in x[code.first_constant..].iter_mut().zip(&code.constants) {
             *register = [*constant; LANES];
         }
         Self { code, x, slack, accept, accepted: [0; LANES], irregular: 0 }
     }
 
-    /// Runs the program on up to [`LANES`] poses, each with its free values; returns the lanes whose answers are not complete.
-    pub(super) fn run(&mut self, poses: &[(Frame, &[f64])]) -> Mask {
+    /// Runs the program on up to [`LANES`] poses, each with its free values; returns the lanes whose answers are not complete,
+    /// and those that have none.
+    pub(super) fn run(&mut self, poses: &[(Frame, &[f64])]) -> (Mask, Mask) {
         for (lane, (frame, free)) in poses.iter().enumerate() {
             let numbers = frame.rotation.iter().flatten().chain(&frame.position).chain(*free);
             for (register, number) in self.x.iter_mut().zip(numbers) {
@@ -54,8 +55,7 @@ impl<'a, F: FnMut(usize, &[f64])> Run<'a, F> {
         self.irregular = 0;
         let all = ((1u16 << poses.len()) - 1) as Mask;
         self.block(&self.code.body, all);
-        let empty = (0..poses.len()).filter(|lane| self.accepted[*lane] == 0);
-        empty.fold(self.irregular, |mask, lane| mask | 1 << lane)
+        (self.irregular, lanes_where(all & !self.irregular, |lane| self.accepted[lane] == 0))
     }
 
     fn block(&mut self, items: &'a [Item], mask: Mask) {

@@ -4,7 +4,7 @@ use robotc_core::Pose;
 use robotc_core::ik::{IkSolutions, InverseKinematics, PreferenceError, Preferences, VariableRange};
 use robotc_core::model::SerialChain;
 
-use super::lanes::{self, LANES};
+use super::lanes::{self, LANES, Wide};
 use super::{Bytecode, Candidate, TooLarge, TrueChain, Verdict, frame, interpreter};
 use crate::ir::{Program, TextError};
 use crate::kernel::candidate::{MOST_MISSES, WIDER, is_exact};
@@ -220,12 +220,14 @@ impl Solver {
 }
 
 /// The solutions of many poses, in the order of the poses.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default)]
 pub struct Batch {
     width: usize,
     values: Vec<f64>,
     /// Where the solutions of each pose end.
     ends: Vec<usize>,
+    /// Room for the next call.
+    registers: Vec<Wide>,
 }
 
 impl Batch {
@@ -251,6 +253,17 @@ impl Solver {
     ///
     /// `free` holds the values of the free variables of one pose after the other.
     pub fn solve_batch(&self, base_from_tip: &[Pose], free: &[f64], out: &mut Batch) {
+        self.batch(base_from_tip, free, out, false);
+    }
+
+    /// As [`solve_batch`](Self::solve_batch), but what has no solution at first sight is not looked at again with wider
+    /// slack: a pose at which several axes line up may come out empty. Fast where most poses are out of reach, and they were
+    /// drawn, or the free values were, so that singular ones do not matter.
+    pub fn solve_batch_once(&self, base_from_tip: &[Pose], free: &[f64], out: &mut Batch) {
+        self.batch(base_from_tip, free, out, true);
+    }
+
+    fn batch(&self, base_from_tip: &[Pose], free: &[f64], out: &mut Batch, once: bool) {
         let (n, all, given) = (self.ranges.len(), self.program.variables, self.program.free.len());
         assert_eq!(free.len(), given * base_from_tip.len(), "one value for each free variable of each pose");
         out.width = n;
@@ -262,26 +275,32 @@ impl Solver {
         // What the polish has to see anyway gains nothing.
         let lanes_help = self.engine == Engine::Bytecode && self.program.snap == 0.0;
         let found_cell = std::cell::RefCell::new(&mut found);
-        let mut run = lanes::Run::new(&self.code, self.program.slack, |lane, values: &[f64]| {
-            let found = &mut found_cell.borrow_mut()[lane];
-            if !self.is_in_front(values) {
-                return;
-            }
-            let values = &values[..n];
-            if !found.iter().any(|other| arm.same(values, other)) {
-                found.push(values);
-            }
-        });
+        let mut run =
+            lanes::Run::new(&self.code, &mut out.registers, self.program.slack, |lane, values: &[f64]| {
+                let found = &mut found_cell.borrow_mut()[lane];
+                if !self.is_in_front(values) {
+                    return;
+                }
+                let values = &values[..n];
+                if !found.iter().any(|other| arm.same(values, other)) {
+                    found.push(values);
+                }
+            });
         for (group, poses) in base_from_tip.chunks(LANES).enumerate() {
             let first = group * LANES;
             let given_of = |i: usize| &free[(first + i) * given..][..given];
             found_cell.borrow_mut().iter_mut().for_each(|f| f.reset(n));
             let frames: Vec<(Frame, &[f64])> =
                 poses.iter().enumerate().map(|(i, pose)| (frame(pose), given_of(i))).collect();
-            let rest = if lanes_help { run.run(&frames) } else { u8::MAX };
+            let (irregular, empty) = if lanes_help { run.run(&frames) } else { (u8::MAX, 0) };
             for (i, pose) in poses.iter().enumerate() {
-                if rest >> i & 1 == 1 {
-                    self.solve(pose, given_of(i), &mut alone);
+                if (irregular | empty) >> i & 1 == 1 {
+                    alone.reset(n);
+                    if !once {
+                        self.solve(pose, given_of(i), &mut alone);
+                    } else if irregular >> i & 1 == 1 {
+                        self.attempt(&frames[i].0, given_of(i), self.program.slack, &mut alone);
+                    }
                     out.values.extend(alone.iter().flatten());
                 } else {
                     out.values.extend(found_cell.borrow()[i].iter().flatten());

@@ -9,8 +9,10 @@ use robotc_core::ids::{Idx, LinkIdx};
 use robotc_core::ik::{IkSolutions, InverseKinematics};
 use robotc_core::model::{ChainMotion, SerialChain};
 use robotc_core::{Configuration, DofIdx, Kinematics, LinkPoses, Pose, TypedVec};
+use robotc_ikgen::run::Batch;
 use robotc_ikgen::{Program, Solver};
 
+use super::freedom::{FreeValues, values_of};
 use crate::kinds::{ArmPairs, ConvexParts, IkSolver, LinkPairs};
 use crate::project::{OfArm, OfShape, Subject};
 use crate::projection::{Limits, Mechanism};
@@ -23,21 +25,28 @@ pub struct ArmAlone {
     pub(super) chain: SerialChain,
     pub(super) solver: Solver,
     pub(super) kinematics: Kinematics,
-    #[cfg_attr(not(feature = "build"), expect(dead_code, reason = "only building a map needs it"))]
     pub(super) base: LinkIdx,
     tip: LinkIdx,
     dofs: Vec<DofIdx>,
+    /// Of the free joints: their limits, or one turn.
+    pub(super) free_ranges: Vec<(f64, f64)>,
     pub(super) links: TypedVec<LinkIdx, Arc<Parts3>>,
+    /// A sphere around each link, in its frame: most pairs are far from each other.
+    spheres: TypedVec<LinkIdx, (Point3<f64>, f64)>,
     /// Pairs of links that the first joint moves together: what it does is nothing to them.
     pub(super) together: Vec<(LinkIdx, LinkIdx)>,
     /// Pairs of a link that stays with the base, and one that the first joint moves.
     pub(super) against_base: Vec<(LinkIdx, LinkIdx)>,
 }
 
+/// Values of the free joints that go through the solver together.
+const TOGETHER: usize = 8;
+
 /// Room for intermediate results, so that a loop allocates once.
 #[derive(Default)]
 pub struct Scratch {
-    pub(super) solutions: IkSolutions,
+    solutions: IkSolutions,
+    batch: Batch,
     pub(super) joints: Vec<f64>,
     configuration: Option<Configuration>,
     pub(super) poses: LinkPoses,
@@ -67,7 +76,25 @@ impl ArmAlone {
                 _ => against_base.push((a, b)),
             }
         }
-        Ok(Self { chain, solver, kinematics, base, tip, dofs, links, together, against_base })
+        let range = |&variable: &usize| {
+            let v = &chain.variables[variable];
+            if v.lower.is_finite() && v.upper.is_finite() { (v.lower, v.upper) } else { (-PI, PI) }
+        };
+        let spheres = links.iter().map(|parts| sphere_around(parts)).collect();
+        let free_ranges = solver.free_variables().iter().map(range).collect();
+        Ok(Self {
+            chain,
+            solver,
+            kinematics,
+            base,
+            tip,
+            dofs,
+            free_ranges,
+            links,
+            spheres,
+            together,
+            against_base,
+        })
     }
 
     /// An arm of a compiled robot.
@@ -90,6 +117,19 @@ impl ArmAlone {
         Self::new(&mechanism, ends, &program, links, &pairs).map_err(|_| unplanned())
     }
 
+    /// The shapes of the links, by link of the arm's mechanism.
+    pub fn shapes(&self) -> &TypedVec<LinkIdx, Arc<Parts3>> {
+        &self.links
+    }
+
+    /// The pose of the chain's base in the frame of the mechanism's root.
+    pub fn root_from_base(&self) -> Pose {
+        let mut scratch = Scratch::default();
+        let joints = vec![0.0; self.chain.variables.len()];
+        self.pose(&joints, &mut scratch);
+        *scratch.poses.root_from(self.base)
+    }
+
     /// The chain from base to tip.
     pub fn chain(&self) -> &SerialChain {
         &self.chain
@@ -107,23 +147,80 @@ impl ArmAlone {
         self.reach_with(base_from_tip, &self.free_values(samples), scratch)
     }
 
-    /// As [`reach`](Self::reach), for these values of the free joints.
+    /// As [`reach`](Self::reach), where a byte says which values of the free joints are tried first. A free first joint is
+    /// seen from an azimuth `about` its axis.
+    pub(super) fn reach_from(
+        &self,
+        base_from_tip: &Pose,
+        witness: u8,
+        about: Option<f64>,
+        samples: usize,
+        scratch: &mut Scratch,
+    ) -> Option<Vec<f64>> {
+        if self.free_ranges.is_empty() {
+            return self.reach(base_from_tip, samples, scratch);
+        }
+        let ranges = self.ranges_about(about);
+        let free = FreeValues::evenly(&ranges, samples).from(&values_of(witness, &ranges), &ranges);
+        self.reach_with(base_from_tip, &free, scratch)
+    }
+
+    /// Ranges of the free joints; for poses that were turned by an azimuth about the first axis, from one at which that joint
+    /// is not limited, the range of a free first joint is a turn about that azimuth.
+    pub(super) fn ranges_about(&self, azimuth: Option<f64>) -> Vec<(f64, f64)> {
+        let mut ranges = self.free_ranges.clone();
+        if let (Some(azimuth), Some(&0)) = (azimuth, self.solver.free_variables().first()) {
+            ranges[0] = (azimuth - PI, azimuth + PI);
+        }
+        ranges
+    }
+
+    /// As [`reach`](Self::reach), for these values of the free joints, in this order.
     pub fn reach_with(
         &self,
         base_from_tip: &Pose,
-        free: &[Vec<f64>],
+        free: &FreeValues,
         scratch: &mut Scratch,
     ) -> Option<Vec<f64>> {
+        self.reach_where(base_from_tip, free, scratch, |_, _| true)
+    }
+
+    /// As [`reach_with`](Self::reach_with), the first joint vector that is accepted, say because it touches nothing around
+    /// the arm. `accept` also gets the poses of the arm's links in the frame of the mechanism's root.
+    ///
+    /// The last look at a pose that nothing reaches is for the values in the middle of the list, with all care for singular
+    /// poses.
+    pub fn reach_where(
+        &self,
+        base_from_tip: &Pose,
+        free: &FreeValues,
+        scratch: &mut Scratch,
+        mut accept: impl FnMut(&[f64], &LinkPoses) -> bool,
+    ) -> Option<Vec<f64>> {
+        let (mut batch, mut joints) =
+            (std::mem::take(&mut scratch.batch), std::mem::take(&mut scratch.joints));
         let mut solutions = std::mem::take(&mut scratch.solutions);
-        let mut joints = std::mem::take(&mut scratch.joints);
-        let found = free.iter().find_map(|values| {
-            self.solver.solve(base_from_tip, values, &mut solutions);
-            solutions.iter().find_map(|solution| {
-                let fits = self.within_limits(solution, 0, &mut joints) && !self.collides(&joints, scratch);
-                fits.then(|| joints.clone())
-            })
-        });
-        (scratch.solutions, scratch.joints) = (solutions, joints);
+        let mut fits = |solution: &[f64], scratch: &mut Scratch| {
+            let fits = self.within_limits(solution, 0, &mut joints)
+                && !self.collides(&joints, scratch)
+                && accept(&joints, &scratch.poses);
+            fits.then(|| joints.clone())
+        };
+        let mut found = None;
+        let poses = [*base_from_tip; TOGETHER];
+        let mut at = 0;
+        while free.width() > 0 && found.is_none() && at < free.len() {
+            let count = TOGETHER.min(free.len() - at);
+            let rows: Vec<f64> = (at..at + count).flat_map(|i| free.row(i)).copied().collect();
+            self.solver.solve_batch_once(&poses[..count], &rows, &mut batch);
+            found = (0..count).find_map(|i| batch.solutions(i).find_map(|solution| fits(solution, scratch)));
+            at += count;
+        }
+        if found.is_none() && !free.is_empty() {
+            self.solver.solve(base_from_tip, free.row(free.len() / 2), &mut solutions);
+            found = solutions.iter().find_map(|solution| fits(solution, scratch));
+        }
+        (scratch.batch, scratch.solutions, scratch.joints) = (batch, solutions, joints);
         found
     }
 
@@ -147,8 +244,12 @@ impl ArmAlone {
     }
 
     pub(super) fn touch(&self, pairs: &[(LinkIdx, LinkIdx)], poses: &LinkPoses) -> bool {
+        let around = |link: LinkIdx| (poses.root_from(link) * self.spheres[link].0, self.spheres[link].1);
         pairs.iter().any(|&(a, b)| {
-            any_within(&self.links[a], poses.root_from(a), &self.links[b], poses.root_from(b), 0.0)
+            let ((centre_a, radius_a), (centre_b, radius_b)) = (around(a), around(b));
+            let reach = radius_a + radius_b + 1e-9;
+            (centre_a - centre_b).norm_squared() <= reach * reach
+                && any_within(&self.links[a], poses.root_from(a), &self.links[b], poses.root_from(b), 0.0)
         })
     }
 
@@ -173,24 +274,15 @@ impl ArmAlone {
     }
 
     /// Evenly spaced values of the free joints within their limits: all combinations, one empty one without free joints.
-    pub fn free_values(&self, samples: usize) -> Vec<Vec<f64>> {
-        self.combinations(samples, |variable| {
-            let v = &self.chain.variables[variable];
-            let limited = v.lower.is_finite() && v.upper.is_finite();
-            if limited { (v.lower, v.upper) } else { (-PI, PI) }
-        })
+    pub fn free_values(&self, samples: usize) -> FreeValues {
+        FreeValues::evenly(&self.free_ranges, samples)
     }
+}
 
-    pub(super) fn combinations(&self, samples: usize, range: impl Fn(usize) -> (f64, f64)) -> Vec<Vec<f64>> {
-        let mut combinations = vec![Vec::new()];
-        for &variable in self.solver.free_variables() {
-            let (low, high) = range(variable);
-            let value = |k: usize| low + (high - low) * (k as f64 + 0.5) / samples as f64;
-            let longer = |combination: Vec<f64>| {
-                (0..samples).map(move |k| [combination.as_slice(), &[value(k)]].concat())
-            };
-            combinations = combinations.into_iter().flat_map(longer).collect();
-        }
-        combinations
-    }
+/// A sphere that holds all parts: centre and radius, about the middle of their box.
+fn sphere_around(parts: &Parts3) -> (Point3<f64>, f64) {
+    let Some(bounds) = parts.bounds() else { return (Point3::origin(), 0.0) };
+    let centre = bounds.centre();
+    let points = parts.iter().flat_map(|part| part.points());
+    (centre, points.map(|point| (point - centre).norm()).fold(0.0, f64::max))
 }

@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn the_density_falls_off_smoothly_at_the_edge_of_what_is_reached() {
         let grid = Grid { base_from_axis: Pose::identity(), step: 0.1, radial: 8, level: 1, symmetric: true };
-        let full = Cell { whole: Sectors::ALL, part: Sectors::ALL, density: FULL };
+        let full = Cell { whole: Sectors::ALL, part: Sectors::ALL, density: FULL, witness: 0 };
         let (count, rotations) = (grid.len(), grid.rotations().len());
         let cells = (0..count).map(|cell| match grid.corner(cell / rotations).0 < 0.45 {
             true => full,

@@ -6,14 +6,17 @@
 //!
 //! The second step is long and is kept in pieces. The first is short; every process that takes part does it by itself.
 
-use nalgebra::{Point3, UnitQuaternion};
-use robotc_core::Seed;
+use nalgebra::Point3;
+use robotc_core::Pose;
+use robotc_ikgen::run::Batch;
 
 use super::arm::{ArmAlone, Scratch};
 use super::azimuth::Sectors;
+use super::freedom::{FreeValues, byte_of};
 use super::grid::Grid;
 use super::map::{Cell, FULL, ReachabilityMap};
 use super::probes::Probes;
+use super::sweep::{self, Part};
 use super::turning::{Azimuths, Turning};
 use crate::kind::{BuildError, Context};
 use crate::kinds::ReachSphere;
@@ -29,11 +32,6 @@ pub(super) struct Effort {
     pub(super) configurations: usize,
 }
 
-/// Random configurations of one task, and tasks of one round. Rounds know what the rounds before found, so that most
-/// configurations of the later ones need no collision test.
-const CHUNK: usize = 1 << 13;
-const ROUND: usize = 32;
-
 /// Looks at all cells.
 pub(super) fn fill(
     arm: &ArmAlone,
@@ -45,27 +43,12 @@ pub(super) fn fill(
     let rotations = grid.rotations();
     let probes = Probes::new(&rotations, effort.probes);
     let turning = Turning::new(arm);
-    let free = match grid.symmetric {
-        true => turning.free_values(effort.free_samples, 0.0),
-        false => arm.free_values(effort.free_samples),
-    };
-    let look = Look { arm, turning, grid: &grid, probes: &probes, free: &free };
+    let parts = sweep::parts(arm, &turning, &grid, effort.configurations, context)?;
+    let ranges = arm.ranges_about(grid.symmetric.then_some(0.0));
+    let free = FreeValues::evenly(&ranges, effort.free_samples);
+    let look = Look { arm, turning, grid: &grid, probes: &probes, ranges: &ranges, free: &free };
     let places: Vec<usize> = (0..grid.places()).collect();
-
-    let mut parts = vec![Sectors::NONE; grid.len()];
-    let chunks: Vec<usize> = (0..effort.configurations.div_ceil(CHUNK)).collect();
-    let seed = context.seed().split("configurations");
-    for round in chunks.chunks(ROUND) {
-        let hits = context.map(round, |_, &chunk| {
-            let count = CHUNK.min(effort.configurations - chunk * CHUNK);
-            look.configurations(seed.at(chunk as u64), count, &parts)
-        })?;
-        for (cell, azimuths) in hits.into_iter().flatten() {
-            parts[cell] = parts[cell].or(azimuths);
-        }
-    }
-
-    let count = grid.rotations().len();
+    let count = rotations.len();
     let cells = context.map_in_pieces("places", &places, |_, &place| {
         look.place(place, sphere, &parts[place * count..(place + 1) * count])
     })?;
@@ -78,88 +61,170 @@ struct Look<'a> {
     turning: Turning<'a>,
     grid: &'a Grid,
     probes: &'a Probes,
-    free: &'a [Vec<f64>],
+    ranges: &'a [(f64, f64)],
+    free: &'a FreeValues,
 }
+
+/// A cell that is being looked at.
+struct Open {
+    rotation: usize,
+    cell: Cell,
+    /// Rows of the free values, those first with which more of the centre is reached.
+    order: Vec<u16>,
+}
+
+/// A probe of a cell that is being looked at.
+struct Asked {
+    /// Position among the open cells.
+    open: usize,
+    pose: Pose,
+    found: Azimuths,
+}
+
+/// Rotations of a place whose centres are looked at together.
+const CHUNK: usize = 64;
 
 impl Look<'_> {
     /// The cells of a place, of which these parts are known to be reached.
-    fn place(&self, place: usize, sphere: &ReachSphere, parts: &[Sectors]) -> Vec<Cell> {
+    fn place(&self, place: usize, sphere: &ReachSphere, parts: &[Part]) -> Vec<Cell> {
         let mut scratch = Scratch::default();
-        let cells = parts.iter().zip(&self.probes.rotations);
-        cells.map(|(&part, rotations)| self.cell(place, rotations, sphere, part, &mut scratch)).collect()
+        let mut batch = Batch::default();
+        let mut cells: Vec<Cell> = parts
+            .iter()
+            .map(|part| Cell { part: part.azimuths, witness: part.witness, ..Cell::default() })
+            .collect();
+        let mut open = Vec::new();
+        for first in (0..cells.len()).step_by(CHUNK) {
+            let rotations = first..(first + CHUNK).min(cells.len());
+            self.centres(place, rotations, sphere, &mut cells, &mut open, (&mut batch, &mut scratch));
+        }
+        for probe in 1..self.probes.shares.len() {
+            // Nothing more is learned of cells that are known to be reached somewhere at all azimuths, and nowhere as a whole.
+            open.retain(|open| {
+                !open.cell.part.is_empty() && !(open.cell.whole.is_empty() && open.cell.part == Sectors::ALL)
+            });
+            self.probe(place, probe, &mut open, (&mut batch, &mut scratch));
+            for open in &open {
+                cells[open.rotation] = open.cell;
+            }
+        }
+        // Between probes the azimuths of a cell's poses vary a little.
+        cells.iter_mut().for_each(|cell| cell.part = cell.part.widened());
+        cells
     }
 
-    fn cell(
+    /// Looks at the centres of some cells with all values of the free joints.
+    fn centres(
         &self,
         place: usize,
-        rotations: &[UnitQuaternion<f64>],
+        rotations: std::ops::Range<usize>,
         sphere: &ReachSphere,
-        part: Sectors,
-        scratch: &mut Scratch,
-    ) -> Cell {
-        let centre = self.grid.pose(place, self.probes.shares[0], &rotations[0]);
-        let away = (Point3::from(centre.translation.vector) - sphere.centre_in_base).norm();
-        let found = match away <= sphere.radius + 1e-9 {
-            true => self.azimuths(&centre, true, scratch),
-            false => Azimuths::default(),
+        cells: &mut [Cell],
+        open: &mut Vec<Open>,
+        (batch, scratch): (&mut Batch, &mut Scratch),
+    ) {
+        let rows = self.free.len();
+        let centre = |rotation: usize| {
+            self.grid.pose(place, self.probes.shares[0], &self.probes.rotations[rotation][0])
         };
-        let density = (usize::from(FULL) * found.count).div_ceil(self.free.len()) as u8;
-        let mut cell = Cell { whole: found.whole, part: found.part.or(part), density };
-        for (share, rotation) in self.probes.shares.iter().zip(rotations).skip(1) {
-            if cell.part.is_empty() || (cell.whole.is_empty() && cell.part == Sectors::ALL) {
-                break;
+        let position = Point3::from(centre(rotations.start).translation.vector);
+        let within = (position - sphere.centre_in_base).norm() <= sphere.radius + 1e-9;
+        let poses: Vec<Pose> = rotations.clone().map(centre).collect();
+        if within && self.grid.symmetric {
+            let repeated: Vec<Pose> =
+                poses.iter().flat_map(|pose| std::iter::repeat_n(*pose, rows)).collect();
+            let values: Vec<f64> =
+                poses.iter().flat_map(|_| (0..rows).flat_map(|row| self.free.row(row))).copied().collect();
+            self.arm.solver.solve_batch_once(&repeated, &values, batch);
+        }
+        let mut gains = vec![0; rows];
+        for (i, rotation) in rotations.enumerate() {
+            let cell = &mut cells[rotation];
+            let mut found = Azimuths::default();
+            let mut count = 0;
+            match within {
+                false => {}
+                true if self.grid.symmetric => {
+                    for (row, gain) in gains.iter_mut().enumerate() {
+                        let before = found.whole.count();
+                        let solutions = batch.solutions(i * rows + row);
+                        let reached = self.turning.add(solutions, Sectors::ALL, true, &mut found, scratch);
+                        count += usize::from(reached);
+                        *gain = 2 * (found.whole.count() - before) + u32::from(reached);
+                    }
+                }
+                true => {
+                    found = self.sector_by_sector(&poses[i], scratch);
+                    count = if found.whole.is_empty() { 0 } else { rows };
+                }
             }
-            let found = self.azimuths(&self.grid.pose(place, *share, rotation), false, scratch);
+            cell.density = (usize::from(FULL) * count).div_ceil(rows) as u8;
+            cell.whole = found.whole;
+            cell.part = cell.part.or(found.part);
+            let mut order: Vec<u16> = (0..rows as u16).collect();
+            order.sort_by_key(|row| std::cmp::Reverse(gains[usize::from(*row)]));
+            if count > 0 && self.grid.symmetric {
+                cell.witness = byte_of(self.free.row(usize::from(order[0])), self.ranges);
+            }
+            gains.fill(0);
+            open.push(Open { rotation, cell: *cell, order });
+        }
+    }
+
+    /// Looks at one probe of each open cell, with one row of the free values after the other until enough is known.
+    fn probe(
+        &self,
+        place: usize,
+        probe: usize,
+        open: &mut [Open],
+        (batch, scratch): (&mut Batch, &mut Scratch),
+    ) {
+        let share = self.probes.shares[probe];
+        let pose = |open: &Open| self.grid.pose(place, share, &self.probes.rotations[open.rotation][probe]);
+        let mut asked: Vec<Asked> = open
+            .iter()
+            .enumerate()
+            .map(|(i, o)| {
+                let found = Azimuths { whole: Sectors::NONE, part: o.cell.part };
+                Asked { open: i, pose: pose(o), found }
+            })
+            .collect();
+        if !self.grid.symmetric {
+            for asked in &mut asked {
+                asked.found = self.sector_by_sector(&asked.pose, scratch);
+            }
+        }
+        let rows = if self.grid.symmetric { self.free.len() } else { 0 };
+        let mut live: Vec<usize> = (0..asked.len()).collect();
+        for turn in 0..rows {
+            let row = |i: &usize| usize::from(open[asked[*i].open].order[turn]);
+            let poses: Vec<Pose> = live.iter().map(|&i| asked[i].pose).collect();
+            let values: Vec<f64> = live.iter().flat_map(|i| self.free.row(row(i))).copied().collect();
+            self.arm.solver.solve_batch_once(&poses, &values, batch);
+            for (solved, &i) in live.iter().enumerate() {
+                let Asked { open: o, found, .. } = &mut asked[i];
+                self.turning.add(batch.solutions(solved), open[*o].cell.whole, false, found, scratch);
+            }
+            // Of a cell that is reached as a whole somewhere, the parts beside that are not worth more solving.
+            live.retain(|&i| {
+                let whole = open[asked[i].open].cell.whole;
+                whole.is_empty() || !asked[i].found.whole.contains(whole)
+            });
+        }
+        for Asked { open: o, found, .. } in asked {
+            let cell = &mut open[o].cell;
             cell.whole = cell.whole.and(found.whole);
             cell.part = cell.part.or(found.part);
         }
-        // Between probes the azimuths of a cell's poses vary a little.
-        cell.part = cell.part.widened();
-        cell
     }
 
-    /// Cells in which the tip is at random configurations, with the azimuths; only what adds to `known`.
-    fn configurations(&self, seed: Seed, count: usize, known: &[Sectors]) -> Vec<(usize, Sectors)> {
-        let chain = self.arm.chain();
-        let mut scratch = Scratch::default();
-        let mut rng = seed.rng();
-        let mut found = Vec::new();
-        let range = |v: &robotc_core::model::ChainVariable| match (v.lower.is_finite(), v.upper.is_finite()) {
-            (true, true) => (v.lower, v.upper),
-            _ => (-std::f64::consts::PI, std::f64::consts::PI),
-        };
-        let mut joints = vec![0.0; chain.variables.len()];
-        for _ in 0..count {
-            for (joint, variable) in joints.iter_mut().zip(&chain.variables) {
-                let (low, high) = range(variable);
-                *joint = rng.range(low, high);
-            }
-            let Some(seen) = self.grid.see(&chain.forward(&joints)) else { continue };
-            let part = known[seen.cell];
-            if self.grid.symmetric {
-                joints[0] -= libm::atan2(seen.towards.1, seen.towards.0);
-                let (_, turns) = self.turning.turns(joints[0]);
-                if !part.contains(turns) {
-                    found.push((seen.cell, self.turning.azimuths_of(&joints, &mut scratch)));
-                }
-            } else if !part.contains(seen.sector()) && !self.arm.collides(&joints, &mut scratch) {
-                found.push((seen.cell, seen.sector()));
-            }
-        }
-        found
-    }
-
-    fn azimuths(&self, base_from_tip: &robotc_core::Pose, count: bool, scratch: &mut Scratch) -> Azimuths {
-        if self.grid.symmetric {
-            return self.turning.azimuths(base_from_tip, self.free, count, scratch);
-        }
-        // Without symmetry every sector is looked at by itself, at its centre.
+    /// Without symmetry every sector is looked at by itself, at its centre.
+    fn sector_by_sector(&self, base_from_tip: &Pose, scratch: &mut Scratch) -> Azimuths {
         let mut found = Azimuths::default();
         for (sector, azimuth) in Sectors::ALL.centres() {
             let pose = self.grid.turned(base_from_tip, azimuth);
             if self.arm.reach_with(&pose, self.free, scratch).is_some() {
                 found.whole = found.whole.or(sector);
-                found.count = self.free.len();
             }
         }
         found.part = found.whole;

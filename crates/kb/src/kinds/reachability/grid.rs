@@ -39,7 +39,7 @@ pub struct Seen {
 impl Seen {
     /// The sector of the tip's azimuth.
     pub fn sector(&self) -> Sectors {
-        Sectors::at(libm::atan2(self.towards.1, self.towards.0))
+        Sectors::towards(self.towards.1, self.towards.0)
     }
 }
 
@@ -128,10 +128,11 @@ impl Grid {
 
     /// The place at a distance from the axis and a height along it.
     pub fn place(&self, distance: f64, height: f64) -> Option<usize> {
-        let radial = (distance / self.step) as usize;
-        let vertical = (height / self.step).floor() + self.radial as f64;
-        let inside = radial < self.radial && vertical >= 0.0 && vertical < 2.0 * self.radial as f64;
-        inside.then(|| radial * 2 * self.radial + vertical as usize)
+        let cells = 1.0 / self.step;
+        // Above zero, the conversion to an integer rounds down.
+        let (radial, vertical) = (distance * cells, height * cells + self.radial as f64);
+        let inside = radial < self.radial as f64 && vertical >= 0.0 && vertical < 2.0 * self.radial as f64;
+        inside.then(|| radial as usize * 2 * self.radial + vertical as usize)
     }
 }
 

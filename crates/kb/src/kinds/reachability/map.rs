@@ -4,6 +4,7 @@ use robotc_core::Pose;
 use robotc_planning::Reachability;
 use serde::{Deserialize, Serialize};
 
+use super::arm::{ArmAlone, Scratch};
 use super::azimuth::Sectors;
 use super::grid::{Grid, Seen};
 
@@ -28,6 +29,9 @@ pub struct Cell {
     /// How much of the arm's freedom reaches the centre: 0 (the centre is not reached) to [`FULL`] (every value of the free
     /// joints that was tried).
     pub density: u8,
+    /// Values of the free joints that reach some of a cell that is not reached as a whole: what exact inverse kinematics tries
+    /// first. Zero for other cells, and for arms without free joints.
+    pub witness: u8,
 }
 
 /// Largest [`Cell::density`].
@@ -42,14 +46,23 @@ pub struct ReachabilityMap {
     pub grid: Grid,
     /// Number of poses of a cell that were looked at before it was called reached as a whole.
     pub probes: u8,
-    /// Two bits for each cell, 32 cells a word.
-    words: Vec<u64>,
-    /// For each word: how many cells before it are not `No`, and how many `Varies`.
-    ranks: Vec<[u32; 2]>,
-    /// For each cell that is not `No`, ascending: [`Cell::density`].
-    densities: Vec<u8>,
+    /// 32 cells a block.
+    blocks: Vec<Block>,
+    /// For each cell that is not `No`, ascending: [`Cell::density`] and [`Cell::witness`].
+    details: Vec<[u8; 2]>,
     /// For each `Varies` cell, ascending: whole and part.
     azimuths: Vec<[Sectors; 2]>,
+}
+
+/// 32 cells: what a question reads of them lies together.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Block {
+    /// Two bits for each cell.
+    word: u64,
+    /// How many cells before these are not `No`.
+    some_before: u32,
+    /// How many cells before these are `Varies`.
+    varying_before: u32,
 }
 
 /// The two bits of a cell.
@@ -65,7 +78,8 @@ impl ReachabilityMap {
     /// A map of these cells; `None` when their number is not that of the grid.
     pub fn new(grid: Grid, probes: u8, cells: impl Iterator<Item = Cell>) -> Option<Self> {
         let count = grid.len();
-        let (mut words, mut densities, mut azimuths) = (vec![0; count.div_ceil(32)], Vec::new(), Vec::new());
+        let mut blocks = vec![Block::default(); count.div_ceil(32)];
+        let (mut details, mut azimuths) = (Vec::new(), Vec::new());
         let mut i = 0;
         for cell in cells {
             let bits = match (cell.whole, cell.part) {
@@ -77,41 +91,42 @@ impl ReachabilityMap {
             if i == count {
                 return None;
             }
-            words[i / 32] |= bits << (2 * (i % 32));
+            blocks[i / 32].word |= bits << (2 * (i % 32));
             if bits != NO {
-                densities.push(cell.density.min(FULL));
+                details.push([cell.density.min(FULL), if bits == YES { 0 } else { cell.witness }]);
             }
             if bits == VARIES {
                 azimuths.push([cell.whole.and(cell.part), cell.part]);
             }
             i += 1;
         }
-        let mut ranks = Vec::with_capacity(words.len());
-        let mut before = [0; 2];
-        for word in &words {
-            ranks.push(before);
-            before[0] += some(*word).count_ones();
-            before[1] += varying(*word).count_ones();
+        let (mut some_before, mut varying_before) = (0, 0);
+        for block in &mut blocks {
+            *block = Block { some_before, varying_before, ..*block };
+            some_before += some(block.word).count_ones();
+            varying_before += varying(block.word).count_ones();
         }
-        (i == count).then_some(Self { grid, probes, words, ranks, densities, azimuths })
+        (i == count).then_some(Self { grid, probes, blocks, details, azimuths })
     }
 
     /// What is known of a cell.
     pub fn cell(&self, cell: usize) -> Cell {
-        let (word, shift) = (self.words[cell / 32], 2 * (cell % 32));
+        let Block { word, some_before, varying_before } = self.blocks[cell / 32];
+        let shift = 2 * (cell % 32);
         let below = (1_u64 << shift) - 1;
-        let [some_before, varying_before] = self.ranks[cell / 32];
-        let density = || self.densities[(some_before + (some(word) & below).count_ones()) as usize];
-        match word >> shift & 3 {
-            NO => Cell::default(),
-            YES => Cell { whole: Sectors::ALL, part: Sectors::ALL, density: density() },
-            MIXED => Cell { whole: Sectors::NONE, part: Sectors::ALL, density: density() },
+        let (whole, part) = match word >> shift & 3 {
+            NO => return Cell::default(),
+            YES => (Sectors::ALL, Sectors::ALL),
+            MIXED => (Sectors::NONE, Sectors::ALL),
             _ => {
                 let varies = (varying_before + (varying(word) & below).count_ones()) as usize;
                 let [whole, part] = self.azimuths[varies];
-                Cell { whole, part, density: density() }
+                (whole, part)
             }
-        }
+        };
+        let some_before = some_before + (some(word) & below).count_ones();
+        let [density, witness] = self.details[some_before as usize];
+        Cell { whole, part, density, witness }
     }
 
     /// All cells, ascending.
@@ -126,15 +141,19 @@ impl ReachabilityMap {
 
     /// As [`verdict`](Self::verdict), of a pose seen from the axis.
     pub fn verdict_at(&self, seen: &Seen) -> Verdict {
-        match self.words[seen.cell / 32] >> (2 * (seen.cell % 32)) & 3 {
+        let Block { word, varying_before, .. } = self.blocks[seen.cell / 32];
+        let shift = 2 * (seen.cell % 32);
+        match word >> shift & 3 {
             NO => Verdict::No,
             YES => Verdict::Yes,
             MIXED => Verdict::Mixed,
             _ => {
-                let (cell, sector) = (self.cell(seen.cell), seen.sector());
-                if cell.whole.contains(sector) {
+                let below = (varying(word) & ((1 << shift) - 1)).count_ones();
+                let [whole, part] = self.azimuths[(varying_before + below) as usize];
+                let sector = seen.sector();
+                if whole.contains(sector) {
                     Verdict::Yes
-                } else if cell.part.contains(sector) {
+                } else if part.contains(sector) {
                     Verdict::Mixed
                 } else {
                     Verdict::No
@@ -143,10 +162,33 @@ impl ReachabilityMap {
         }
     }
 
+    /// A joint vector of the map's arm that reaches a tip pose within limits and without self-collision; `None` when there is
+    /// none as far as the map and exact inverse kinematics know.
+    ///
+    /// Of a redundant arm the values of the free joints known for the cell are tried first, then `samples` evenly spaced
+    /// ones of each free joint, by their distance from those. What the map says no to is not solved for.
+    pub fn reach(
+        &self,
+        arm: &ArmAlone,
+        base_from_tip: &Pose,
+        samples: usize,
+        scratch: &mut Scratch,
+    ) -> Option<Vec<f64>> {
+        let seen = self.grid.see(base_from_tip)?;
+        match self.verdict_at(&seen) {
+            Verdict::No => None,
+            Verdict::Yes => arm.reach(base_from_tip, samples, scratch),
+            Verdict::Mixed => {
+                let about = self.grid.symmetric.then(|| libm::atan2(seen.towards.1, seen.towards.0));
+                arm.reach_from(base_from_tip, self.cell(seen.cell).witness, about, samples, scratch)
+            }
+        }
+    }
+
     /// Number of cells of which something, everything, and a part that depends on the azimuth is reached.
     pub fn counts(&self) -> [usize; 3] {
-        let yes = |word: &u64| (word & !(word >> 1) & LOWER).count_ones() as usize;
-        [self.densities.len(), self.words.iter().map(yes).sum(), self.azimuths.len()]
+        let yes = |word: u64| (word & !(word >> 1) & LOWER).count_ones() as usize;
+        [self.details.len(), self.blocks.iter().map(|block| yes(block.word)).sum(), self.azimuths.len()]
     }
 }
 
@@ -198,7 +240,12 @@ mod tests {
                 some,
             ][rng.below(4)];
             let density = if part.is_empty() { 0 } else { rng.below(16) as u8 };
-            cells.push(Cell { whole, part, density });
+            let witness = if part.is_empty() || (whole, part) == (Sectors::ALL, Sectors::ALL) {
+                0
+            } else {
+                rng.bits() as u8
+            };
+            cells.push(Cell { whole, part, density, witness });
         }
         let map =
             ReachabilityMap::new(grid.clone(), 1, cells.iter().copied()).expect("as many as in the grid");

@@ -2,9 +2,12 @@
 
 mod arm;
 mod azimuth;
+mod bases;
 mod density;
 #[cfg(feature = "build")]
 mod fill;
+mod floor;
+mod freedom;
 mod grid;
 mod map;
 mod pack;
@@ -12,14 +15,19 @@ mod placement;
 #[cfg(feature = "build")]
 mod probes;
 #[cfg(feature = "build")]
+mod sweep;
+#[cfg(feature = "build")]
 mod turning;
 
 pub use arm::{ArmAlone, Scratch};
 pub use azimuth::{SECTORS, Sectors};
+pub use bases::{MapBases, MountedArm};
 pub use density::KernelDensity;
+pub use floor::Floor;
+pub use freedom::FreeValues;
 pub use grid::{Grid, Seen};
 pub use map::{Cell, FULL, ReachabilityMap, Verdict};
-pub use placement::{Placement, PlacementError, Placements, Target, Trust, verdicts};
+pub use placement::{Placement, Placements, Target, Trust, verdicts};
 
 use robotc_core::Kinematics;
 use robotc_core::ids::{Idx, LinkIdx};
@@ -82,8 +90,8 @@ impl Inputs {
 
 impl Kind for Reachability {
     const NAME: &'static str = "reachability";
-    const FORMAT: u32 = 2;
-    const ALGORITHM: u32 = 2;
+    const FORMAT: u32 = 3;
+    const ALGORITHM: u32 = 3;
     const PORTABILITY: Portability = Portability::Portable;
     const IN_PIECES: bool = true;
     const DOC: &'static str = "Which poses of its tip an arm reaches, seen from its first axis. Grasps are ranked by it before anything is solved.";
@@ -153,7 +161,6 @@ mod build {
     use robotc_core::geom::ConvexParts as Parts3;
 
     use super::fill::{Effort, fill};
-    use super::turning::Turning;
     use super::*;
     use crate::kind::{Build, BuildError, Context};
 
@@ -198,16 +205,14 @@ mod build {
         ) -> Result<(), BuildError> {
             let arm = arm(inputs, context)?;
             let mut scratch = Scratch::default();
-            let (turning, samples) = (Turning::new(&arm), parameters.free_samples as usize);
+            let samples = parameters.free_samples as usize;
             let cells: Vec<usize> = (0..map.grid.len()).filter(|&c| !map.cell(c).whole.is_empty()).collect();
             for (i, &cell) in cells.iter().step_by((cells.len() / CHECKED).max(1)).enumerate() {
                 let sectors: Vec<_> = map.cell(cell).whole.centres().collect();
                 let (_, azimuth) = sectors[i % sectors.len()];
                 let pose = map.grid.turned(&map.grid.centre(cell), azimuth);
-                let free = match map.grid.symmetric {
-                    true => turning.free_values(samples, azimuth),
-                    false => arm.free_values(samples),
-                };
+                let ranges = arm.ranges_about(map.grid.symmetric.then_some(azimuth));
+                let free = FreeValues::evenly(&ranges, samples);
                 let reached = arm.reach_with(&pose, &free, &mut scratch).is_some_and(|joints| {
                     let off = pose.inv_mul(&arm.chain().forward(&joints));
                     off.translation.vector.norm() < 1e-6 && off.rotation.angle() < 1e-6

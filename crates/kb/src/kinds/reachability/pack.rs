@@ -26,6 +26,13 @@ struct Stored {
     probes: u8,
     kinds: Vec<(u32, u32, u8)>,
     runs: Vec<u32>,
+    /// Of all cells that are reached in part and not as a whole; none for an arm without free joints.
+    witnesses: Vec<u8>,
+}
+
+/// Whether a cell is reached, and not as a whole at all azimuths.
+fn in_part(whole: Sectors, part: Sectors) -> bool {
+    !part.is_empty() && whole != Sectors::ALL
 }
 
 /// The bytes of a map.
@@ -47,6 +54,8 @@ pub(super) fn encode(map: &ReachabilityMap) -> Vec<u8> {
     kinds.sort_by_key(|&(kind, count)| (std::cmp::Reverse(count), kind));
     let numbers: std::collections::BTreeMap<_, u32> =
         kinds.iter().enumerate().map(|(i, &(kind, _))| (kind, i as u32)).collect();
+    let witnesses: Vec<u8> =
+        map.cells().filter(|cell| in_part(cell.whole, cell.part)).map(|cell| cell.witness).collect();
     let pose = map.grid.base_from_axis;
     codec::encode(&Stored {
         position: pose.translation.vector.into(),
@@ -58,6 +67,7 @@ pub(super) fn encode(map: &ReachabilityMap) -> Vec<u8> {
         probes: map.probes,
         kinds: kinds.into_iter().map(|(kind, _)| kind).collect(),
         runs: runs.into_iter().flat_map(|(kind, length)| [numbers[&kind], length]).collect(),
+        witnesses: if witnesses.iter().any(|w| *w != 0) { witnesses } else { Vec::new() },
     })
 }
 
@@ -71,7 +81,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<ReachabilityMap, DecodeError> {
     if (rotation.norm() - 1.0).abs() > 1e-9 {
         return Err(DecodeError::new("a rotation is not of unit length"));
     }
-    if s.level > 6 || s.radial == 0 || s.radial > 1 << 12 {
+    if s.level >= robotc_core::so3::LEVELS || s.radial == 0 || s.radial > 1 << 12 {
         return Err(DecodeError::new("the grid is too large"));
     }
     let base_from_axis = Pose::from_parts(Translation3::from(s.position), rotation);
@@ -83,7 +93,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<ReachabilityMap, DecodeError> {
         return Err(DecodeError::new("there are not as many cells as the grid has"));
     }
     let cell = |&(whole, part, density): &(u32, u32, u8)| {
-        let cell = Cell { whole: Sectors(whole), part: Sectors(part), density };
+        let cell = Cell { whole: Sectors(whole), part: Sectors(part), density, witness: 0 };
         let consistent = cell.part.contains(cell.whole) && density <= FULL;
         (consistent && (!cell.part.is_empty() || density == 0)).then_some(cell)
     };
@@ -92,6 +102,16 @@ pub(super) fn decode(bytes: &[u8]) -> Result<ReachabilityMap, DecodeError> {
     if runs.iter().any(|run| run[0] as usize >= kinds.len()) {
         return Err(DecodeError::new("a cell is of no kind"));
     }
+    let in_parts = |run: &&[u32; 2]| in_part(kinds[run[0] as usize].whole, kinds[run[0] as usize].part);
+    let witnessed: usize = runs.iter().filter(in_parts).map(|run| run[1] as usize).sum();
+    if !s.witnesses.is_empty() && s.witnesses.len() != witnessed {
+        return Err(DecodeError::new("there are not as many witnesses as cells in part"));
+    }
+    let mut witnesses = s.witnesses.into_iter();
     let cells = runs.iter().flat_map(|run| std::iter::repeat_n(kinds[run[0] as usize], run[1] as usize));
+    let cells = cells.map(|cell| match in_part(cell.whole, cell.part) {
+        true => Cell { witness: witnesses.next().unwrap_or(0), ..cell },
+        false => cell,
+    });
     ReachabilityMap::new(grid, s.probes, cells).ok_or_else(|| DecodeError::new("tables do not fit together"))
 }

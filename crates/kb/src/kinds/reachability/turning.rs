@@ -1,12 +1,10 @@
 //! An arm and its first axis: what a turn about it changes.
 
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
 
 use nalgebra::{Point3, Vector3};
 use robotc_core::geom::any_within;
 use robotc_core::ids::LinkIdx;
-use robotc_core::ik::InverseKinematics as _;
 use robotc_core::{Configuration, LinkPoses, Pose};
 
 use super::arm::{ArmAlone, Scratch};
@@ -29,8 +27,6 @@ pub(super) struct Azimuths {
     pub(super) whole: Sectors,
     /// Sectors in which it is reached at some azimuth.
     pub(super) part: Sectors,
-    /// Number of values of the free joints that reach it somewhere.
-    pub(super) count: usize,
 }
 
 impl<'a> Turning<'a> {
@@ -55,47 +51,40 @@ impl<'a> Turning<'a> {
         Self { arm, origin, direction, envelopes }
     }
 
-    /// The azimuths, turned by which about the first axis a pose keeps a way to be reached: all, and those in parts.
-    /// `free` are values of the free joints; with `count`, the number of them that reach it at any azimuth is counted, and
-    /// all are tried.
-    pub(super) fn azimuths(
+    /// Adds the azimuths, turned by which about the first axis one of `solutions` reaches a pose without self-collision; says
+    /// whether one does at any azimuth, as far as it was looked at. Of the sectors as a whole only those in `needed` are
+    /// looked for; with `count`, something is looked for even if it adds nothing.
+    pub(super) fn add<'s>(
         &self,
-        base_from_tip: &Pose,
-        free: &[Vec<f64>],
+        solutions: impl Iterator<Item = &'s [f64]>,
+        needed: Sectors,
         count: bool,
+        found: &mut Azimuths,
         scratch: &mut Scratch,
-    ) -> Azimuths {
-        let mut found = Azimuths::default();
-        let mut solutions = std::mem::take(&mut scratch.solutions);
+    ) -> bool {
         let mut joints = std::mem::take(&mut scratch.joints);
-        for values in free {
-            self.arm.solver.solve(base_from_tip, values, &mut solutions);
-            let mut reached = false;
-            for solution in solutions.iter() {
-                if !self.arm.within_limits(solution, 1, &mut joints) {
-                    continue;
-                }
-                let (whole, part) = self.turns(joints[0]);
-                let adds = !found.whole.contains(whole) || !found.part.contains(part);
-                // Only what adds to what is known is worth a collision test.
-                if !adds && (reached || !count) {
-                    continue;
-                }
-                let free_of = self.free_azimuths(&joints, part, scratch);
-                reached |= !free_of.is_empty();
-                found.whole = found.whole.or(whole.and(free_of));
-                found.part = found.part.or(part.and(free_of));
+        let mut reached = false;
+        for solution in solutions {
+            if !self.arm.within_limits(solution, 1, &mut joints) {
+                continue;
             }
-            found.count += usize::from(reached);
-            if !count && found.whole == Sectors::ALL {
-                break;
+            let (whole, part) = self.turns(joints[0]);
+            let whole = whole.and(needed);
+            let adds = !found.whole.contains(whole) || !found.part.contains(part);
+            // Only what adds to what is known is worth a collision test.
+            if !adds && (reached || !count) {
+                continue;
             }
+            let free_of = self.free_azimuths(&joints, part, scratch);
+            reached |= !free_of.is_empty();
+            found.whole = found.whole.or(whole.and(free_of));
+            found.part = found.part.or(part.and(free_of));
         }
-        (scratch.solutions, scratch.joints) = (solutions, joints);
-        found
+        scratch.joints = joints;
+        reached
     }
 
-    /// As [`azimuths`](Self::azimuths), of one known joint vector.
+    /// The azimuths, turned by which about the first axis one joint vector reaches its pose.
     pub(super) fn azimuths_of(&self, joints: &[f64], scratch: &mut Scratch) -> Sectors {
         let (_, part) = self.turns(joints[0]);
         self.free_azimuths(joints, part, scratch)
@@ -151,16 +140,6 @@ impl<'a> Turning<'a> {
             let height = from_origin.dot(&direction);
             let distance = (from_origin - direction * height).norm();
             distance - radius <= widest && height + radius >= lowest && height - radius <= highest
-        })
-    }
-
-    /// As [`ArmAlone::free_values`] for poses that were turned by an azimuth about the first axis, where the first
-    /// joint is not limited, and turned as well.
-    pub(super) fn free_values(&self, samples: usize, azimuth: f64) -> Vec<Vec<f64>> {
-        self.arm.combinations(samples, |variable| match &self.arm.chain.variables[variable] {
-            _ if variable == 0 => (azimuth - PI, azimuth + PI),
-            v if v.lower.is_finite() && v.upper.is_finite() => (v.lower, v.upper),
-            _ => (-PI, PI),
         })
     }
 }

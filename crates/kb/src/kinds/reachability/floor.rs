@@ -1,0 +1,150 @@
+//! What stands on the floor, and whether a base fits between it.
+
+use robotc_core::Pose;
+use robotc_core::geom::ConvexParts;
+use robotc_planning::placement::Prism;
+
+use super::placement::Placement;
+
+/// Outlines of obstacles on the floor, as far as they are as high as a base.
+///
+/// Each convex part counts with all of its outline, also where only some of it is as low as the base: a footprint that is
+/// called clear is clear.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Floor {
+    outlines: Vec<Outline>,
+}
+
+/// A convex polygon, counter-clockwise, with a circle around it.
+#[derive(Debug, Clone, PartialEq)]
+struct Outline {
+    corners: Vec<[f64; 2]>,
+    centre: [f64; 2],
+    radius: f64,
+}
+
+impl Floor {
+    /// The obstacles that are in the heights of `base` somewhere; the base's plane is z = 0 of the world.
+    pub fn new<'a>(obstacles: impl IntoIterator<Item = (&'a ConvexParts, Pose)>, base: &Prism) -> Self {
+        let mut outlines = Vec::new();
+        for (parts, world_from_parts) in obstacles {
+            for part in parts.iter() {
+                let points: Vec<_> = part.points().iter().map(|p| world_from_parts * p).collect();
+                let lowest = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+                let highest = points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max);
+                if lowest < base.heights.1 && highest > base.heights.0 {
+                    outlines.push(Outline::around(points.iter().map(|p| [p.x, p.y]).collect()));
+                }
+            }
+        }
+        Self { outlines }
+    }
+
+    /// Whether a footprint touches no obstacle when its base stands there.
+    pub fn is_clear(&self, base: &Prism, placement: &Placement) -> bool {
+        let (sine, cosine) = (libm::sin(placement.yaw), libm::cos(placement.yaw));
+        let [x, y] = placement.position;
+        let reach = base.footprint.iter().map(|[a, b]| a * a + b * b).fold(0.0, f64::max).sqrt();
+        let near = |outline: &&Outline| {
+            let (dx, dy) = (outline.centre[0] - x, outline.centre[1] - y);
+            let touching = reach + outline.radius;
+            dx * dx + dy * dy <= touching * touching
+        };
+        let mut near = self.outlines.iter().filter(near).peekable();
+        if near.peek().is_none() {
+            return true;
+        }
+        let placed = |[a, b]: &[f64; 2]| [x + cosine * a - sine * b, y + sine * a + cosine * b];
+        let footprint: Vec<[f64; 2]> = base.footprint.iter().map(placed).collect();
+        near.all(|outline| apart(&footprint, &outline.corners) || apart(&outline.corners, &footprint))
+    }
+}
+
+impl Outline {
+    /// The convex hull of points (Andrew's monotone chain).
+    fn around(mut points: Vec<[f64; 2]>) -> Self {
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        points.dedup();
+        let side = |points: &mut dyn Iterator<Item = [f64; 2]>| {
+            let mut chain: Vec<[f64; 2]> = Vec::new();
+            for point in points {
+                while chain.len() > 1 && turn(chain[chain.len() - 2], chain[chain.len() - 1], point) <= 0.0 {
+                    chain.pop();
+                }
+                chain.push(point);
+            }
+            chain.pop();
+            chain
+        };
+        let mut corners = side(&mut points.iter().copied());
+        corners.extend(side(&mut points.iter().rev().copied()));
+        if corners.is_empty() {
+            corners = points;
+        }
+        let count = corners.len() as f64;
+        let centre = [0, 1].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / count);
+        let away = |corner: &[f64; 2]| (corner[0] - centre[0]).hypot(corner[1] - centre[1]);
+        let radius = corners.iter().map(away).fold(0.0, f64::max);
+        Self { corners, centre, radius }
+    }
+}
+
+/// Twice the area of a triangle, positive when it goes round counter-clockwise.
+fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// Whether some edge of counter-clockwise `a` has all of `b` on its outer side.
+fn apart(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
+    (0..a.len()).any(|i| {
+        let (from, to) = (a[i], a[(i + 1) % a.len()]);
+        from != to && b.iter().all(|&corner| turn(from, to, corner) < 0.0)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+    use robotc_core::Seed;
+    use robotc_core::geom::box_part;
+
+    use super::*;
+
+    #[test]
+    fn footprints_are_clear_where_no_point_of_them_is_in_an_obstacle() {
+        let base = Prism {
+            footprint: vec![[0.3, -0.2], [0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2]],
+            heights: (0.0, 0.5),
+        };
+        let table = ConvexParts::new(vec![box_part(Vector3::new(1.2, 0.7, 0.4))]);
+        let shelf = ConvexParts::new(vec![box_part(Vector3::new(3.0, 3.0, 0.1))]);
+        let turned = Pose::new(Vector3::new(0.2, 0.1, 0.3), Vector3::z() * 0.4);
+        let floor = Floor::new([(&table, turned), (&shelf, Pose::translation(0.0, 0.0, 0.6))], &base);
+        let mut rng = Seed::new(1).rng();
+        let mut clear = 0;
+        for _ in 0..2000 {
+            let position = [rng.range(-1.5, 1.5), rng.range(-1.5, 1.5)];
+            let placement = Placement { position, yaw: rng.range(-3.0, 3.0), target: 0, mount: 0 };
+            let world_from_base = placement.world_from_mobile();
+            // A lattice of points of the footprint, seen from the table.
+            let touching = (0..=60).any(|i| {
+                (0..=40).any(|j| {
+                    let point = Vector3::new(0.01 * f64::from(i) - 0.3, 0.01 * f64::from(j) - 0.2, 0.3);
+                    table.contains(&(turned.inverse() * world_from_base * nalgebra::Point3::from(point)))
+                })
+            });
+            let found = floor.is_clear(&base, &placement);
+            clear += usize::from(found);
+            assert!(!(found && touching), "{placement:?}");
+            if !found && !touching {
+                // Only a corner may be cut that the lattice misses.
+                let grown = Prism {
+                    footprint: base.footprint.iter().map(|c| c.map(|x| 0.93 * x)).collect(),
+                    ..base.clone()
+                };
+                assert!(floor.is_clear(&grown, &placement), "{placement:?}");
+            }
+        }
+        assert!(clear > 200 && clear < 1800, "{clear}");
+    }
+}
