@@ -48,18 +48,20 @@ fn numbers_that_are_none_are_refused() {
         GraspSet::decode(&codec::encode(&vec![grasp])).is_ok()
     };
     assert!(grasp(1.0) && !grasp(f64::NAN) && !grasp(0.5));
-    let map = |step: f64, w: f64, part: u32| {
+    let witnessed = |step: f64, w: f64, part: u32, witnesses: usize| {
         // 144 cells: one that is reached in part, and the others not.
         let (grid, kinds) = (
             ([0.0; 3], [0.0, 0.0, 0.0, w], step, 1_u32, 0_u32, true),
             vec![(0_u32, 0_u32, 0_u8), (1, part, 3)],
         );
         let runs = vec![1_u32, 1, 0, 143];
-        Reachability::decode(&codec::encode(&(grid, 8_u8, kinds, runs))).is_ok()
+        Reachability::decode(&codec::encode(&(grid, 8_u8, kinds, runs, vec![7_u8; witnesses]))).is_ok()
     };
+    let map = |step: f64, w: f64, part: u32| witnessed(step, w, part, 0);
     assert!(map(0.1, 1.0, 3));
     assert!(!map(f64::NAN, 1.0, 3) && !map(0.0, 1.0, 3) && !map(0.1, f64::INFINITY, 3) && !map(0.1, 0.5, 3));
     assert!(!map(0.1, 1.0, 2), "what is reached as a whole is reached in part");
+    assert!(witnessed(0.1, 1.0, 3, 1) && !witnessed(0.1, 1.0, 3, 2), "one witness for each cell in part");
 }
 
 /// The bytes with a few of them changed, inserted, removed or cut off.

@@ -105,7 +105,7 @@ fn bases_reach(map: &ReachabilityMap, arm: &ArmAlone, knowledge: &Knowledge) {
 
 fn manipulability_is_the_volume_of_the_jacobian(arm: &ArmAlone) {
     const H: f64 = 1e-6;
-    let mut rng = Seed::new(4).rng();
+    let (mut rng, mut scratch) = (Seed::new(4).rng(), Scratch::default());
     for _ in 0..20 {
         let joints = configuration(arm, &mut rng);
         let middle = arm.chain().forward(&joints);
@@ -121,6 +121,11 @@ fn manipulability_is_the_volume_of_the_jacobian(arm: &ArmAlone) {
             let turn = (forth.rotation * back.rotation.inverse()).scaled_axis() / (2.0 * H);
             jacobian.fixed_view_mut::<3, 1>(0, i).copy_from(&slide);
             jacobian.fixed_view_mut::<3, 1>(3, i).copy_from(&turn);
+        }
+        let best = arm.most_manipulable(&middle, 1, &mut scratch);
+        if !arm.collides(&joints, &mut scratch) {
+            let (best, most) = best.expect("these joints reach it");
+            assert!(most >= arm.manipulability(&joints) * (1.0 - 1e-6) && most == arm.manipulability(&best));
         }
         let (found, expected) = (arm.manipulability(&joints), jacobian.determinant().abs());
         assert!((found - expected).abs() < 1e-5 * (1.0 + expected), "{found} {expected} at {middle:?}");

@@ -299,7 +299,9 @@ impl Solver {
                     if !once {
                         self.solve(pose, given_of(i), &mut alone);
                     } else if irregular >> i & 1 == 1 {
-                        self.attempt(&frames[i].0, given_of(i), self.program.slack, &mut alone);
+                        self.attempt(&frames[i].0, given_of(i), self.program.slack, &mut alone, &mut |_| {
+                            false
+                        });
                     }
                     out.values.extend(alone.iter().flatten());
                 } else {

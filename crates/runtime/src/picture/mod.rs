@@ -3,9 +3,12 @@
 //! A picture holds what the artefact is about (the links, the object) and what the artefact says of it. Some are read
 //! along the timeline: a grasp set shows one grasp after the other.
 
+mod base_placement;
 mod convex_parts;
 mod grasp_set;
+mod link_statistics;
 mod palette;
+mod reachability;
 
 use robotc_core::model::LinkPoses;
 use robotc_core::{Configuration, Kinematics};
@@ -18,8 +21,14 @@ use crate::record::Recording;
 /// Draws the artefacts of a kind; says how many of them.
 type Draw = fn(&Knowledge, &Wanted<'_>, &mut Recording) -> Result<usize, LoadError>;
 
-/// The kinds that can be drawn, by name.
-pub const KINDS: &[(&str, Draw)] = &[("convex_parts", convex_parts::draw), ("grasp_set", grasp_set::draw)];
+/// What can be drawn, by name: kinds of artefacts, and what follows from several of them.
+pub const KINDS: &[(&str, Draw)] = &[
+    ("base_placement", base_placement::draw),
+    ("convex_parts", convex_parts::draw),
+    ("grasp_set", grasp_set::draw),
+    ("link_statistics", link_statistics::draw),
+    ("reachability", reachability::draw),
+];
 
 /// Which subjects of a kind are drawn: those whose label contains a text; all of them when it is empty.
 pub struct Wanted<'a> {
@@ -69,11 +78,17 @@ pub fn picture(knowledge: &Knowledge, kind: &str, subject: &str) -> Result<Recor
     }
 }
 
-/// Where the links of a project's robot are at rest, in the frame of its root: at the start of the task if there is one,
-/// else with each arm at home.
+/// Where the links of a project's robot are at rest, in the frame of its root.
 fn resting_links(project: &Project) -> LinkPoses {
+    let mut poses = LinkPoses::default();
+    Kinematics::new(project.robot().model.clone()).link_poses(&resting(project), &mut poses);
+    poses
+}
+
+/// The configuration at the start of the task if there is one, else with each arm at home.
+fn resting(project: &Project) -> Configuration {
     let robot = project.robot();
-    let q = match project.task() {
+    match project.task() {
         Some(task) => task.start.clone(),
         None => {
             let mut q = Configuration::neutral(&robot.model);
@@ -84,8 +99,5 @@ fn resting_links(project: &Project) -> LinkPoses {
             }
             q
         }
-    };
-    let mut poses = LinkPoses::default();
-    Kinematics::new(robot.model.clone()).link_poses(&q, &mut poses);
-    poses
+    }
 }

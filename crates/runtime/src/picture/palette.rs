@@ -12,9 +12,32 @@ pub(super) fn distinct(index: usize) -> [f32; 4] {
     [channel(5.0), channel(3.0), channel(1.0), 1.0]
 }
 
+/// The colour of a share from 0 to 1: from dark violet over blue and green to yellow, lighter and lighter, so that the order is
+/// seen without hue too.
+pub(super) fn ramp(share: f32) -> [f32; 4] {
+    const STOPS: [[f32; 3]; 5] =
+        [[0.20, 0.06, 0.36], [0.20, 0.28, 0.58], [0.10, 0.52, 0.57], [0.38, 0.74, 0.36], [0.98, 0.89, 0.20]];
+    let at = share.clamp(0.0, 1.0) * (STOPS.len() - 1) as f32;
+    let below = (at as usize).min(STOPS.len() - 2);
+    let along = at - below as f32;
+    let [r, g, b] =
+        std::array::from_fn(|i| STOPS[below][i] + along * (STOPS[below + 1][i] - STOPS[below][i]));
+    [r, g, b, 1.0]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn more_is_lighter() {
+        let light = |share: f32| {
+            let [r, g, b, _] = ramp(share);
+            0.21 * r + 0.72 * g + 0.07 * b
+        };
+        assert!((0..100).all(|k| light(k as f32 / 100.0) < light((k + 1) as f32 / 100.0)));
+        assert_eq!((ramp(-1.0), ramp(2.0)), (ramp(0.0), ramp(1.0)));
+    }
 
     #[test]
     fn neighbours_differ() {

@@ -46,6 +46,8 @@ pub enum Group {
     Grasp,
     /// Where fingers press on an object.
     Contact,
+    /// Where the tip of an arm, or its base, can be.
+    Reach,
     /// What planners searched.
     Tree,
     /// Coordinate axes.
@@ -54,13 +56,14 @@ pub enum Group {
 
 impl Group {
     /// All groups, in the order they are listed to people.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Robot,
         Self::Object,
         Self::Obstacle,
         Self::Path,
         Self::Grasp,
         Self::Contact,
+        Self::Reach,
         Self::Tree,
         Self::Frame,
     ];
@@ -74,6 +77,7 @@ impl Group {
             Self::Path => "Tool path",
             Self::Grasp => "Grasps",
             Self::Contact => "Contacts",
+            Self::Reach => "Reach",
             Self::Tree => "Search trees",
             Self::Frame => "Frames",
         }

@@ -100,7 +100,7 @@ fn direction(azimuth: f64, elevation: f64) -> Vector3<f64> {
 /// much larger. A hall around a robot is not what people came to see. Never empty.
 pub(super) fn focus(recording: &Recording) -> Vec<Bounds> {
     let joined = |all: &[Bounds]| all.iter().copied().reduce(|a, b| a.join(&b)).map_or(0.0, |b| b.diagonal());
-    let mut main = recording.node_bounds(&[Group::Robot, Group::Object]);
+    let mut main = recording.node_bounds(&[Group::Robot, Group::Object, Group::Reach]);
     let obstacles = recording.node_bounds(&[Group::Obstacle]);
     if main.is_empty() || joined(&obstacles) < 2.0 * joined(&main) {
         main.extend(obstacles);

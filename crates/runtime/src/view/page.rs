@@ -181,8 +181,10 @@ struct SceneLabel<'a> {
 fn scene_of<'a>(recording: &'a Recording, block: &mut Block) -> Scene<'a> {
     let camera = camera::Camera::opening(recording, [1.0, 1.0]);
     let focus = camera::focus(recording);
-    let solid = recording.bounds(&[Group::Robot, Group::Object, Group::Obstacle]);
+    let solid = recording.bounds(&[Group::Robot, Group::Object, Group::Obstacle, Group::Reach]);
     let reach = solid.unwrap_or(focus[0]);
+    // What is within reach may be below the floor that a robot stands on.
+    let standing = recording.bounds(&[Group::Robot, Group::Object, Group::Obstacle]).unwrap_or(reach);
     Scene {
         title: &recording.title,
         duration: recording.duration(),
@@ -191,7 +193,7 @@ fn scene_of<'a>(recording: &'a Recording, block: &mut Block) -> Scene<'a> {
         groups: groups_of(recording),
         camera: SceneCamera { azimuth: camera.azimuth, elevation: camera.elevation, fov_y: camera.fov_y },
         focus: focus.iter().map(scene_bounds).collect(),
-        floor: reach.low.z.min(0.0),
+        floor: standing.low.z.min(0.0),
         reach: scene_bounds(&reach),
         surfaces: recording.surfaces().iter().map(|s| scene_surface(s, block)).collect(),
         nodes: recording.nodes().iter().map(|n| scene_node(n, block)).collect(),

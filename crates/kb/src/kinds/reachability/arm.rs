@@ -117,6 +117,11 @@ impl ArmAlone {
         Self::new(&mechanism, ends, &program, links, &pairs).map_err(|_| unplanned())
     }
 
+    /// The link that carries the tip.
+    pub fn tip(&self) -> LinkIdx {
+        self.tip
+    }
+
     /// The shapes of the links, by link of the arm's mechanism.
     pub fn shapes(&self) -> &TypedVec<LinkIdx, Arc<Parts3>> {
         &self.links
@@ -222,6 +227,25 @@ impl ArmAlone {
         }
         (scratch.batch, scratch.solutions, scratch.joints) = (batch, solutions, joints);
         found
+    }
+
+    /// Of the joint vectors that reach a tip pose within limits and without self-collision, for `samples` evenly spaced values
+    /// of each free joint, the one with the largest manipulability, with that; `None` when there is none.
+    pub fn most_manipulable(
+        &self,
+        base_from_tip: &Pose,
+        samples: usize,
+        scratch: &mut Scratch,
+    ) -> Option<(Vec<f64>, f64)> {
+        let mut best: Option<(Vec<f64>, f64)> = None;
+        self.reach_where(base_from_tip, &self.free_values(samples), scratch, |joints, _| {
+            let found = self.manipulability(joints);
+            if best.as_ref().is_none_or(|(_, most)| found > *most) {
+                best = Some((joints.to_vec(), found));
+            }
+            false
+        });
+        best
     }
 
     /// Manipulability at a joint vector: the square root of det(J J^T) of the tip's 6-row Jacobian, angles in radians and

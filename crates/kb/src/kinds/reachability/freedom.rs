@@ -60,6 +60,7 @@ fn bins(joints: usize) -> usize {
 }
 
 /// A byte for values of the free joints.
+#[cfg(feature = "build")]
 pub(super) fn byte_of(values: &[f64], ranges: &[(f64, f64)]) -> u8 {
     let bins = bins(ranges.len());
     let bin = |(value, (low, high)): (&f64, &(f64, f64))| {

@@ -5,7 +5,7 @@ use robotc_planning::Reachability;
 use serde::{Deserialize, Serialize};
 
 use super::arm::{ArmAlone, Scratch};
-use super::azimuth::Sectors;
+use super::azimuth::{SECTORS, Sectors};
 use super::grid::{Grid, Seen};
 
 /// What a map says of a pose.
@@ -183,6 +183,25 @@ impl ReachabilityMap {
                 arm.reach_from(base_from_tip, self.cell(seen.cell).witness, about, samples, scratch)
             }
         }
+    }
+
+    /// The mean density over all rotations of each place, for each sector of azimuths: 0 (nothing is reached there) to 1.
+    /// What is drawn of a map.
+    pub fn densities(&self) -> Vec<[f64; SECTORS as usize]> {
+        let rotations = self.grid.rotations().len();
+        let of_place = |place: usize| {
+            let mut sums = [0.0; SECTORS as usize];
+            for cell in (0..rotations).map(|rotation| self.cell(place * rotations + rotation)) {
+                if cell.part.is_empty() {
+                    continue;
+                }
+                for (sector, sum) in sums.iter_mut().enumerate() {
+                    *sum += f64::from(cell.part.0 >> sector & 1) * weight(&cell);
+                }
+            }
+            sums.map(|sum| sum / rotations as f64)
+        };
+        (0..self.grid.places()).map(of_place).collect()
     }
 
     /// Number of cells of which something, everything, and a part that depends on the azimuth is reached.

@@ -2,9 +2,11 @@
 //!
 //! For each robot specification, its first arm: the time to compute the map, its size, what it says of held-out random
 //! configurations and of uniform poses compared with exhaustive inverse kinematics, and the time of a query. Prints rows of
-//! a Markdown table.
+//! a Markdown table; to the error stream base placements, alone and in [`scenes`].
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod scenes;
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -79,7 +81,7 @@ fn row(file: &std::path::Path, level: i64) -> Result<String, Box<dyn Error>> {
     compile(&Arc::new(Graph::plan(&Project::of_robot(&spec))?), &store, &())?;
     spec.parameters.set("reachability", "step", ParameterValue::Number(STEP));
     spec.parameters.set("reachability", "level", ParameterValue::Integer(level));
-    spec.parameters.set("reachability", "configurations", ParameterValue::Integer(4_000_000));
+    spec.parameters.set("reachability", "configurations", ParameterValue::Integer(16_000_000));
     let graph = Arc::new(Graph::plan(&Project::of_robot(&spec))?);
     let start = processor_seconds();
     let report = compile(&graph, &store, &())?;
@@ -145,7 +147,8 @@ fn row(file: &std::path::Path, level: i64) -> Result<String, Box<dyn Error>> {
         black_box(map.reach(&arm, pose, EXACT, &mut scratch));
     }
     let mixed_query = (processor_seconds() - start) * 1e6 / mixed.len().max(1) as f64;
-    eprintln!("{}", placements(&arm, &map, &free)?);
+    eprintln!("{}", placements(&arm, &map, &free));
+    scenes::rows(&spec.name, &arm, &map, reach.radius).iter().for_each(|row| eprintln!("{row}"));
 
     let [some, whole, _] = map.counts();
     let cells = map.grid.len();
@@ -183,7 +186,7 @@ fn query_time(map: &ReachabilityMap, poses: &[Pose], rng: &mut Rng) -> f64 {
 
 /// Base placements for poses on a table: time, and how many samples have collision-free inverse kinematics, compared with
 /// bases drawn uniformly from the disc of the arm's reach.
-fn placements(arm: &ArmAlone, map: &ReachabilityMap, free: &FreeValues) -> Result<String, Box<dyn Error>> {
+fn placements(arm: &ArmAlone, map: &ReachabilityMap, free: &FreeValues) -> String {
     const SAMPLES: usize = 5000;
     const POSES: usize = 1000;
     let mut rng = Seed::new(2024).split("placements").rng();
@@ -226,11 +229,11 @@ fn placements(arm: &ArmAlone, map: &ReachabilityMap, free: &FreeValues) -> Resul
         uniform += usize::from(reached(position, rng.range(-PI, PI), target));
     }
     let share = |count: usize| 100.0 * count as f64 / SAMPLES as f64;
-    Ok(format!(
+    format!(
         "base placements: {one:.2} ms for 1 pose, {all:.0} ms for {POSES}; {:.1} % of samples reached, {:.1} % of uniform \
          ones, {:.1} times as many",
         share(good),
         share(uniform),
         good as f64 / uniform.max(1) as f64,
-    ))
+    )
 }
