@@ -4,14 +4,18 @@ mod support;
 
 use std::sync::Arc;
 
-use nalgebra::Matrix6;
+use nalgebra::{Matrix6, Vector3};
+use robotc_core::geom::{ConvexParts, box_part};
 use robotc_core::rng::Rng;
 use robotc_core::spec::ParameterValue;
 use robotc_core::{Pose, Seed};
-use robotc_kb::kinds::reachability::{ArmAlone, Placements, Scratch, Target, Trust, Verdict};
+use robotc_kb::kinds::reachability::{
+    ArmAlone, Floor, MapBases, MountedArm, Placement, Placements, Scratch, Target, Trust, Verdict,
+};
 use robotc_kb::kinds::{ChainReach, Reachability, ReachabilityMap};
 use robotc_kb::project::OfArm;
 use robotc_kb::{Graph, Knowledge, Store, compile};
+use robotc_planning::placement::{BaseDistribution as _, Prism};
 
 /// The arm of the test robot, compiled with cells of a tenth of its reach.
 fn compiled(folder: &std::path::Path) -> Knowledge {
@@ -44,6 +48,7 @@ fn maps_agree_with_exact_inverse_kinematics() {
     misses_little(&map, &arm);
     promises_little_too_much(&map, &arm, &knowledge);
     bases_reach(&map, &arm, &knowledge);
+    bases_among_obstacles_are_clear_and_reach(&map, &arm, &knowledge);
     manipulability_is_the_volume_of_the_jacobian(&arm);
 }
 
@@ -101,6 +106,33 @@ fn bases_reach(map: &ReachabilityMap, arm: &ArmAlone, knowledge: &Knowledge) {
         reached += usize::from(arm.reach(&base_from_tip, 1, &mut scratch).is_some());
     }
     assert!(reached * 100 >= COUNT * 95, "{reached} of {COUNT} bases reach");
+}
+
+/// A planner's bases for poses keep their footprint clear.
+fn bases_among_obstacles_are_clear_and_reach(map: &ReachabilityMap, arm: &ArmAlone, knowledge: &Knowledge) {
+    let base =
+        Prism { footprint: vec![[0.2, -0.2], [0.2, 0.2], [-0.2, 0.2], [-0.2, -0.2]], heights: (0.0, 0.3) };
+    let wall = ConvexParts::new(vec![box_part(Vector3::new(4.0, 0.2, 2.0))]);
+    let floor = Floor::new([(&wall, Pose::translation(0.0, 0.3, 1.0))], &base);
+    let mount = Pose::translation(0.1, 0.0, 0.0);
+    let mounted = MountedArm { map, mounts: vec![mount], tool_from_tip: Pose::identity() };
+    let mut bases = MapBases::new(vec![mounted], Some((&floor, &base)));
+    let (mut rng, mut scratch) = (Seed::new(5).rng(), Scratch::default());
+    let (mut drawn, mut reached) = (0, 0);
+    for _ in 0..100 {
+        let world_from_tip = pose(knowledge, &mut rng);
+        let mass = bases.mass(0, &world_from_tip);
+        let Some([x, y, yaw]) = bases.draw(0, &world_from_tip, &mut rng) else { continue };
+        assert!(mass > 0.0);
+        let placement = Placement { position: [x, y], yaw, target: 0, mount: 0 };
+        assert!(floor.is_clear(&base, &placement), "{placement:?}");
+        drawn += 1;
+        let base_from_tip = (placement.world_from_mobile() * mount).inv_mul(&world_from_tip);
+        reached += usize::from(arm.reach(&base_from_tip, 1, &mut scratch).is_some());
+    }
+    assert!(drawn >= 30 && reached * 100 >= drawn * 90, "{reached} of {drawn} bases reach");
+    let far = Pose::translation(0.0, 0.0, 50.0);
+    assert!(bases.mass(0, &far) == 0.0 && bases.draw(0, &far, &mut rng).is_none());
 }
 
 fn manipulability_is_the_volume_of_the_jacobian(arm: &ArmAlone) {

@@ -20,7 +20,8 @@ impl FreeValues {
         Self { width: ranges.len(), rows: rows.len(), values: rows.concat() }
     }
 
-    /// These values first, and then the rows in the order of their distance from them, in shares of the ranges.
+    /// As many rows: these values first, and then all but the farthest in the order of their distance from them, in shares of
+    /// the ranges.
     pub(super) fn from(self, first: &[f64], ranges: &[(f64, f64)]) -> Self {
         let away = |row: &[f64]| -> f64 {
             let axes = row.iter().zip(first).zip(ranges);
@@ -28,9 +29,10 @@ impl FreeValues {
         };
         let mut order: Vec<(f64, usize)> = (0..self.rows).map(|i| (away(self.row(i)), i)).collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order.pop();
         let mut values = first.to_vec();
         order.iter().for_each(|&(_, i)| values.extend(self.row(i)));
-        Self { width: self.width, rows: self.rows + 1, values }
+        Self { width: self.width, rows: self.rows, values }
     }
 
     /// Number of rows.
@@ -94,7 +96,7 @@ mod tests {
         assert_eq!((rows.row(0), rows.row(3)), (&[1.0, 11.0][..], &[3.0, 13.0][..]));
         let rows = rows.from(&[2.5, 12.9], &ranges);
         let all: Vec<&[f64]> = (0..rows.len()).map(|i| rows.row(i)).collect();
-        assert_eq!(all, [[2.5, 12.9], [3.0, 13.0], [1.0, 13.0], [3.0, 11.0], [1.0, 11.0]]);
+        assert_eq!(all, [[2.5, 12.9], [3.0, 13.0], [1.0, 13.0], [3.0, 11.0]]);
         let none = FreeValues::evenly(&[], 8);
         assert_eq!((none.len(), none.row(0)), (1, &[][..]));
     }

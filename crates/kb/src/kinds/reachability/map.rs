@@ -165,8 +165,8 @@ impl ReachabilityMap {
     /// A joint vector of the map's arm that reaches a tip pose within limits and without self-collision; `None` when there is
     /// none as far as the map and exact inverse kinematics know.
     ///
-    /// Of a redundant arm the values of the free joints known for the cell are tried first, then `samples` evenly spaced
-    /// ones of each free joint, by their distance from those. What the map says no to is not solved for.
+    /// Of a redundant arm, of which `samples` evenly spaced values of each free joint are tried, those known for the cell come
+    /// first, in place of the farthest, and the others by their distance from them. What the map says no to is not solved for.
     pub fn reach(
         &self,
         arm: &ArmAlone,

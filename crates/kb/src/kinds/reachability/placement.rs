@@ -16,7 +16,7 @@ use super::azimuth::{SECTORS, Sectors};
 use super::map::{Cell, ReachabilityMap, Verdict, weight};
 
 /// Directions from which a target is looked at.
-const DIRECTIONS: usize = 96;
+const DIRECTIONS: u32 = 96;
 
 /// Headings of a base that is not turned about the arm's first axis.
 const HEADINGS: u32 = 48;
@@ -145,8 +145,8 @@ impl Placements {
         let target = self.targets[t].world_from_tip;
         for m in (0..self.mounts.len()).filter(|m| self.mounts[*m].upright).collect::<Vec<_>>() {
             let height = target.translation.vector.z - self.mounts[m].position().z;
-            for d in 0..DIRECTIONS {
-                let half = -0.5 * direction(d as f64 + 0.5);
+            for direction in 0..DIRECTIONS {
+                let half = -0.5 * towards(f64::from(direction) + 0.5);
                 let back = Quaternion::new(libm::cos(half), 0.0, 0.0, libm::sin(half));
                 let rotation = rotations.cell(&(UnitQuaternion::new_unchecked(back) * target.rotation));
                 for radial in 0..map.grid.radial {
@@ -159,8 +159,8 @@ impl Placements {
                     }
                     // Places count by their area and by the turns that are left to them.
                     let share = f64::from(azimuths.count()) / f64::from(SECTORS);
-                    let area = distance * map.grid.step * TAU / DIRECTIONS as f64;
-                    let spot = Spot::Ring { direction: d as u32, radial: radial as u32, azimuths };
+                    let area = distance * map.grid.step * TAU / f64::from(DIRECTIONS);
+                    let spot = Spot::Ring { direction, radial: radial as u32, azimuths };
                     self.add(t, m, spot, weight(&cell) * share * area);
                 }
             }
@@ -274,12 +274,14 @@ impl Placements {
         squares
     }
 
-    /// A base of a cell; `shares` say where in it, each from 0 to 1: uniform ones give uniform bases.
+    /// A base of a cell; the shares say where in it, each from 0 to 1: uniform ones give uniform bases.
     fn place(&self, cell: &BaseCell, [a, b, c]: [f64; 3]) -> Placement {
         let (target, mount) = (cell.target as usize, cell.mount as usize);
         let p = self.targets[target].world_from_tip.translation.vector;
-        let (towards, radial, azimuths) = match cell.spot {
-            Spot::Ring { direction: d, radial, azimuths } => (direction(f64::from(d) + a), radial, azimuths),
+        let (angle, radial, azimuths) = match cell.spot {
+            Spot::Ring { direction, radial, azimuths } => {
+                (towards(f64::from(direction) + a), radial, azimuths)
+            }
             Spot::Square { x, y, heading } => {
                 let yaw = (f64::from(heading) + c) * TAU / f64::from(HEADINGS) - PI;
                 let position = [p.x + (f64::from(x) + a) * self.step, p.y + (f64::from(y) + b) * self.step];
@@ -292,9 +294,9 @@ impl Placements {
         // The base from which the target is seen at this azimuth, when the first axis is so far from it and looks so.
         let within = c * f64::from(azimuths.count());
         let azimuth = azimuths.nth(within as u32) + (within.fract() - 0.5) * TAU / f64::from(SECTORS);
-        let yaw = towards - azimuth - self.mounts[mount].turn;
+        let yaw = angle - azimuth - self.mounts[mount].turn;
         let (sine, cosine) = (libm::sin(yaw), libm::cos(yaw));
-        let axis = [p.x - distance * libm::cos(towards), p.y - distance * libm::sin(towards)];
+        let axis = [p.x - distance * libm::cos(angle), p.y - distance * libm::sin(angle)];
         let at = self.mounts[mount].position();
         let arm = [cosine * at.x - sine * at.y, sine * at.x + cosine * at.y];
         let yaw = yaw - TAU * libm::round(yaw / TAU);
@@ -313,8 +315,9 @@ pub fn verdicts(
     targets.iter().map(|target| map.verdict(&(base_from_world * target.world_from_tip))).collect()
 }
 
-fn direction(index: f64) -> f64 {
-    index * TAU / DIRECTIONS as f64
+/// The angle of a direction.
+fn towards(index: f64) -> f64 {
+    index * TAU / f64::from(DIRECTIONS)
 }
 
 #[cfg(test)]
