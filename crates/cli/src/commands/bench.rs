@@ -57,7 +57,8 @@ struct Input {
 #[derive(Args)]
 #[command(
     after_help = "Example:\n  robotc bench checks problems.json.xz --urdf arm.urdf --srdf arm.srdf\n\n\
-    All checkers look at the same free motions in the first problem of each family of scenes."
+    All checkers look at the same free motions in the first problem of each family of scenes.\n\
+    A look is a test by spheres; a proof holds until the next configuration."
 )]
 struct Checks {
     #[command(flatten)]
@@ -102,13 +103,17 @@ fn checks(args: &Checks) -> Outcome {
     let rates = rates.map_err(|error| Failure::Input(error.to_string()))?;
     print(&format!("{}: configurations per second, thousands", set.robot));
     for rate in &rates {
-        let lanes = rate.lanes.iter().map(|(lanes, rate)| format!("{lanes} lanes {:7.0}", rate / 1e3));
-        let best = rate.lanes.iter().map(|(_, rate)| *rate).fold(0.0, f64::max);
+        let list = |rates: &[(usize, f64)]| {
+            let each = rates.iter().map(|(lanes, rate)| format!("{lanes} lanes {:6.0}", rate / 1e3));
+            each.collect::<Vec<_>>().join(", ")
+        };
+        let best = rate.looks.iter().map(|(_, rate)| *rate).fold(0.0, f64::max);
         print(&format!(
-            "{:16} {:2} obstacles: {}, one at a time {:5.1}: {:.0} times",
+            "{:16} {:2} obstacles: looks {}; proofs {}; one at a time {:5.1}: looks {:.0} times",
             rate.scene,
             rate.obstacles,
-            lanes.collect::<Vec<_>>().join(", "),
+            list(&rate.looks),
+            list(&rate.lanes),
             rate.scalar / 1e3,
             best / rate.scalar
         ));

@@ -6,8 +6,8 @@ use serde::Serialize;
 use super::problems::ProblemSet;
 use super::robot::{BenchError, BenchRobot};
 use super::run::checker;
-use crate::edge::EdgeChecker;
-use crate::lanes::{LaneChecker, LaneMemory, Width};
+use crate::edge::{EdgeChecker, Patience};
+use crate::lanes::{LaneChecker, LaneMemory, LaneStatistics, Width};
 
 /// Check rates in one scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -20,7 +20,9 @@ pub struct CheckRates {
     pub motions: usize,
     /// Configurations for each motion and checker.
     pub configurations: u64,
-    /// For each number of lanes, configurations per second; each also proves the motion free until the next one.
+    /// For each number of lanes, configurations looked at per second, whole motions each time.
+    pub looks: Vec<(usize, f64)>,
+    /// For each number of lanes, configurations per second when each also proves the motion free until the next one.
     pub lanes: Vec<(usize, f64)>,
     /// Configurations per second of the scalar checker with convex parts, without the search for clearance.
     pub scalar: f64,
@@ -63,19 +65,26 @@ pub fn measure_checks(
                 motions.push((from, to));
             }
         }
-        let mut by_width = Vec::new();
+        let (mut looks, mut by_width) = (Vec::new(), Vec::new());
         let mut configurations = 0;
         for width in Width::all() {
-            let mut checker = LaneChecker::new(lanes, scene, space, 0.0, width, &mut memory);
-            let start = now();
-            for _ in 0..REPEATS {
-                for (from, to) in &motions {
-                    let _ = checker.edge(from, to);
+            let mut rate = |patience| {
+                let mut checker = LaneChecker::new(lanes, scene, space, 0.0, width, &mut memory);
+                checker.set_patience(patience);
+                let start = now();
+                for _ in 0..REPEATS {
+                    for (from, to) in &motions {
+                        let _ = checker.edge(from, to);
+                    }
                 }
-            }
-            let seconds = now() - start;
-            configurations = checker.statistics().stretches;
-            by_width.push((width.lanes(), configurations as f64 / seconds.max(f64::MIN_POSITIVE)));
+                let seconds = (now() - start).max(f64::MIN_POSITIVE);
+                let LaneStatistics { looks, stretches, .. } = checker.statistics();
+                (looks + stretches, (width.lanes(), (looks + stretches) as f64 / seconds))
+            };
+            looks.push(rate(Patience::Hopeful).1);
+            let (count, proofs) = rate(Patience::Thorough);
+            configurations = count;
+            by_width.push(proofs);
         }
         let mut scalar = checker(robot, &stage).without_clearance();
         let each = (configurations as usize / (REPEATS * motions.len().max(1))).max(1);
@@ -94,6 +103,7 @@ pub fn measure_checks(
             obstacles: problem.obstacles.len(),
             motions: motions.len(),
             configurations,
+            looks,
             lanes: by_width,
             scalar: states.len() as f64 / seconds.max(f64::MIN_POSITIVE),
         });

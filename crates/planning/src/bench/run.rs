@@ -140,7 +140,7 @@ fn plan_problem(
         total_us: median(&|a| Some(a.total_us)).unwrap_or(0.0),
         cost: median(&|a| a.found.as_ref().ok().map(|f| f.cost)),
         cost_simplified: median(&|a| a.found.as_ref().ok().map(|f| length(&f.simplified))),
-        checks: median(&|a| Some(a.statistics.stretches as f64)).unwrap_or(0.0) as u64,
+        checks: median(&|a| Some((a.statistics.looks + a.statistics.stretches) as f64)).unwrap_or(0.0) as u64,
         distances: median(&|a| Some(a.statistics.distances as f64)).unwrap_or(0.0) as u64,
         iterations: median(&|a| Some(f64::from(a.iterations))).unwrap_or(0.0) as u64,
         reason,

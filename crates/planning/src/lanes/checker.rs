@@ -77,7 +77,7 @@ const STRETCHES: usize = MOST_LANES;
 const LONGEST: f64 = 1.0 / 16.0;
 
 /// Looks at a motion are no farther apart than this, in the metric of the space.
-const LOOK: f64 = 1.0 / 32.0;
+const LOOK: f64 = 1.0 / 20.0;
 
 /// Stretches in which nothing moves farther than this, in metres, are left to the convex parts.
 const FINE: f64 = 8e-3;
