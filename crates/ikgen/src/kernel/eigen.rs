@@ -17,7 +17,7 @@ pub type Square = [[f64; MAX_SIZE]; MAX_SIZE];
 pub fn hessenberg_eigenvalues(h: &mut Square, n: usize, found: &mut [[f64; 2]; MAX_SIZE]) -> usize {
     let mut count = 0;
     let mut size = n;
-    let mut sweeps = 0u32;
+    let mut sweeps = 0;
     let mut norm = 0.0f64;
     for row in &h[..n] {
         for x in &row[..n] {
@@ -79,7 +79,7 @@ fn two_by_two(a: f64, b: f64, c: f64, d: f64) -> [[f64; 2]; 2] {
 
 /// One implicit step on rows `start..size`, with the eigenvalues of the trailing two by two block as shifts. Both never part two such
 /// blocks that have the same eigenvalues: after some sweeps only the one nearer to the corner is taken, twice, if they are real.
-fn double_step(h: &mut Square, start: usize, size: usize, sweep: u32) {
+fn double_step(h: &mut Square, start: usize, size: usize, sweep: i32) {
     let (k, l) = (size - 2, size - 1);
     let (mut trace, mut determinant) = (h[k][k] + h[l][l], h[k][k] * h[l][l] - h[k][l] * h[l][k]);
     if sweep % 10 == 0 {
