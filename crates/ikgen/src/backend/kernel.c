@@ -570,7 +570,7 @@ static double ik_polish(const ik_chain *chain, const ik_frame *pose, double valu
             for (j = 0; j <= i; j++)
                 if (!ik_held[j])
                     for (k = 0; k < 6; k++) normal[i][j] += columns[i][k] * columns[j][k];
-            normal[i][i] += 1e-15;
+            normal[i][i] += 1e-15 + 0.25 * distance * distance;
             for (k = 0; k < 6; k++) right[i] += columns[i][k] * error[k];
         }
         ik_solve_symmetric(normal, right);

@@ -93,6 +93,10 @@ pub fn forward(links: &[Link], last_from_tip: &Frame, steps: &[[f64; 2]]) -> Fra
 
 /// Brings `values` onto the pose by Newton steps on the true chain; the variables marked in `held` stay.
 ///
+/// The steps are damped by the square of the distance that is left (Yamashita and Fukushima, "On the rate of convergence of the
+/// Levenberg-Marquardt method", 2001). Where the ideal chain could move and keep the pose, the true one nearly can: a solution may lie
+/// far along that way, and what a long step spoils has to be mended before the next one.
+///
 /// Returns the distance that is left, the smallest met. Steps may go uphill: where two solutions fall together Newton's method
 /// halves its distance to them from far out, but may first have to get there. They end when they lead nowhere: the
 /// distance has not fallen to a half within [`PATIENCE`] of them.
@@ -104,7 +108,7 @@ pub fn polish(
     held: &[bool],
 ) -> f64 {
     // Directions in which the tip hardly moves are left alone.
-    const DAMPING: f64 = 1e-15;
+    const LEAST_DAMPING: f64 = 1e-15;
     let n = values.len();
     let mut at = [0.0; MAX_JOINTS];
     at[..n].copy_from_slice(values);
@@ -128,6 +132,7 @@ pub fn polish(
         } else if since >= PATIENCE {
             break;
         }
+        let damping = LEAST_DAMPING + 0.25 * distance * distance;
         let mut normal = [[0.0; MAX_JOINTS]; MAX_JOINTS];
         let mut right = [0.0; MAX_JOINTS];
         for i in 0..n {
@@ -142,7 +147,7 @@ pub fn polish(
                     }
                 }
             }
-            normal[i][i] += DAMPING;
+            normal[i][i] += damping;
             for k in 0..6 {
                 right[i] += columns[i][k] * error[k];
             }

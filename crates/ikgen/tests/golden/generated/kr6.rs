@@ -862,6 +862,10 @@ mod chain {
 
     /// Brings `values` onto the pose by Newton steps on the true chain; the variables marked in `held` stay.
     ///
+    /// The steps are damped by the square of the distance that is left (Yamashita and Fukushima, "On the rate of convergence of the
+    /// Levenberg-Marquardt method", 2001). Where the ideal chain could move and keep the pose, the true one nearly can: a solution may lie
+    /// far along that way, and what a long step spoils has to be mended before the next one.
+    ///
     /// Returns the distance that is left, the smallest met. Steps may go uphill: where two solutions fall together Newton's method
     /// halves its distance to them from far out, but may first have to get there. They end when they lead nowhere: the
     /// distance has not fallen to a half within [`PATIENCE`] of them.
@@ -873,7 +877,7 @@ mod chain {
         held: &[bool],
     ) -> f64 {
         // Directions in which the tip hardly moves are left alone.
-        const DAMPING: f64 = 1e-15;
+        const LEAST_DAMPING: f64 = 1e-15;
         let n = values.len();
         let mut at = [0.0; MAX_JOINTS];
         at[..n].copy_from_slice(values);
@@ -897,6 +901,7 @@ mod chain {
             } else if since >= PATIENCE {
                 break;
             }
+            let damping = LEAST_DAMPING + 0.25 * distance * distance;
             let mut normal = [[0.0; MAX_JOINTS]; MAX_JOINTS];
             let mut right = [0.0; MAX_JOINTS];
             for i in 0..n {
@@ -911,7 +916,7 @@ mod chain {
                         }
                     }
                 }
-                normal[i][i] += DAMPING;
+                normal[i][i] += damping;
                 for k in 0..6 {
                     right[i] += columns[i][k] * error[k];
                 }
