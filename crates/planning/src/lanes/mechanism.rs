@@ -246,14 +246,14 @@ impl LaneRobot {
             own.iter().copied().filter(|(step, _)| other.iter().all(|(s, _)| s != step)).collect()
         };
         let (own, other) = (only(chain_a, chain_b), only(chain_b, chain_a));
-        let mut closing = self.from_outside(b, parts[1], &own, extents);
-        closing.extend(self.from_outside(a, parts[0], &other, extents));
+        let mut closing = self.branch_seen_from(b, parts[1], &own, extents);
+        closing.extend(self.branch_seen_from(a, parts[0], &other, extents));
         (!closing.is_empty()).then_some(Pair { a, b, closing, apart: None })
     }
 
     /// The steps of a branch that does not move a body, each with its distance in the branch or that of the body from its
     /// axis, in any configuration, whichever is smaller.
-    fn from_outside(
+    fn branch_seen_from(
         &self,
         body: usize,
         parts: &ConvexParts,

@@ -10,7 +10,7 @@ use robotc_core::{BodyIdx, Configuration, Kinematics, LinkIdx, Pose, Robot, Seed
 
 use super::{LaneChecker, LaneMemory, LaneRobot, Width};
 use crate::certify::certify_path;
-use crate::edge::EdgeChecker;
+use crate::edge::{EdgeChecker, Patience};
 use crate::scene::{RobotChecker, Rules, Scene};
 use crate::space::{Axis, Space};
 use crate::testbed;
@@ -171,4 +171,30 @@ fn every_number_of_lanes_gives_the_same_answers() {
         free += usize::from(answers[0]);
     }
     assert!(free > 20, "{free}");
+}
+
+#[test]
+fn what_a_first_look_blocks_is_blocked_with_any_number_of_lanes() {
+    let mut rng = Seed::new(24).rng();
+    let bench = bench(false, &covers(), &mut rng);
+    let mut memory = LaneMemory::default();
+    let mut thorough = bench.lanes(Width::widest(), &mut memory);
+    let (mut passed, mut blocked, mut misled) = (0, 0, 0);
+    for _ in 0..300 {
+        let from = bench.space.sample(&mut rng);
+        let to = bench.space.sample_near(&from, rng.range(0.05, 2.0), &mut rng);
+        let free = thorough.edge(&from, &to).is_ok();
+        let looks = Width::all().into_iter().map(|width| {
+            let mut memory = LaneMemory::default();
+            let mut lanes = bench.lanes(width, &mut memory);
+            lanes.set_patience(Patience::Hopeful);
+            lanes.edge(&from, &to).is_ok()
+        });
+        let looks: Vec<bool> = looks.collect();
+        assert!(looks.iter().all(|look| *look == looks[0]) && (looks[0] || !free), "{from:?} {to:?}");
+        passed += usize::from(looks[0] && free);
+        misled += usize::from(looks[0] && !free);
+        blocked += usize::from(!looks[0]);
+    }
+    assert!(passed > 30 && blocked > 100 && misled < blocked / 4, "{passed} {blocked} {misled}");
 }

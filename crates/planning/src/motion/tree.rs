@@ -65,7 +65,7 @@ impl Tree {
         self.proven.push(proven);
         self.domains.push(f64::INFINITY);
         for ((column, axis), &x) in self.columns.iter_mut().zip(space.axes()).zip(q) {
-            if node % BLOCK == 0 {
+            if node.is_multiple_of(BLOCK) {
                 column.resize(node + BLOCK, f32::INFINITY);
             }
             column[node] = place(axis, x);
@@ -204,7 +204,7 @@ mod tests {
         for _ in 0..300 {
             // Some a turn away.
             let mut q = space.sample(&mut rng);
-            q[0] += 6.283185307179586 * rng.below(3) as f64;
+            q[0] += std::f64::consts::TAU * rng.below(3) as f64;
             let parent = rng.below(tree.len());
             tree.push(&space, parent, &q, rng.below(2) == 0);
         }
