@@ -189,7 +189,7 @@ fn trial<D: BaseDistribution>(
 
 /// Rows of a Markdown table: for each scene the mean time to the first goal, goals for each second, and the share of
 /// places that are one, uniform and from the map, with the ratios.
-pub fn rows(name: &str, arm: &ArmAlone, map: &ReachabilityMap, reach: f64) -> Vec<String> {
+pub(crate) fn rows(name: &str, arm: &ArmAlone, map: &ReachabilityMap, reach: f64) -> Vec<String> {
     let (base, mobile_from_base) = base();
     let mut rows = Vec::new();
     for scene in SCENES {

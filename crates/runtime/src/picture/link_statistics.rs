@@ -69,7 +69,7 @@ pub(super) fn draw(
             let world_from_axis = world_from_robot * links.root_from(joint.child);
             let colour = palette::ramp((row.weight / heaviest) as f32);
             let mut node = Node::new(format!("reach of {name}"), Group::Reach, world_from_axis);
-            node = node.with_lines(circle(&joint.unit_axis(), row.reach, colour, start as f32));
+            node = node.with_lines(circle(joint.unit_axis(), row.reach, colour, start as f32));
             recording.add_node(node);
         }
     }

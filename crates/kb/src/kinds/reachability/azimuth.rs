@@ -27,7 +27,8 @@ impl Sectors {
 
     /// The sector of the direction of (x, y), good to 1e-7 radians: faster than [`at`](Self::at).
     pub fn towards(y: f64, x: f64) -> Self {
-        Self(1 << (turn_of(y, x) * f64::from(SECTORS)) as u32 % SECTORS)
+        let sector = (turn_of(y, x) * f64::from(SECTORS)) as u32;
+        Self(1 << (sector % SECTORS))
     }
 
     /// The sectors that lie in an arc as a whole, and those that touch it. The arc starts at an azimuth and has a length,

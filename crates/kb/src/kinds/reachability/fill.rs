@@ -101,7 +101,9 @@ impl Look<'_> {
         for probe in 1..self.probes.shares.len() {
             // Nothing more is learned of cells that are known to be reached somewhere at all azimuths, and nowhere as a whole.
             open.retain(|open| {
-                !open.cell.part.is_empty() && !(open.cell.whole.is_empty() && open.cell.part == Sectors::ALL)
+                let cell = &open.cell;
+                let nowhere_whole = cell.whole.is_empty() && cell.part == Sectors::ALL;
+                !cell.part.is_empty() && !nowhere_whole
             });
             self.probe(place, probe, &mut open, (&mut batch, &mut scratch));
             for open in &open {
