@@ -118,19 +118,21 @@ fn bases_among_obstacles_are_clear_and_reach(map: &ReachabilityMap, arm: &ArmAlo
     let mounted = MountedArm { map, mounts: vec![mount], tool_from_tip: Pose::identity() };
     let mut bases = MapBases::new(vec![mounted], Some((&floor, &base)));
     let (mut rng, mut scratch) = (Seed::new(5).rng(), Scratch::default());
-    let (mut drawn, mut reached) = (0, 0);
-    for _ in 0..100 {
+    // Poses count by their mass, as planners choose them.
+    let (mut drawn, mut reached, mut count) = (0.0, 0.0, 0);
+    for _ in 0..300 {
         let world_from_tip = pose(knowledge, &mut rng);
         let mass = bases.mass(0, &world_from_tip);
         let Some([x, y, yaw]) = bases.draw(0, &world_from_tip, &mut rng) else { continue };
         assert!(mass > 0.0);
+        count += 1;
         let placement = Placement { position: [x, y], yaw, target: 0, mount: 0 };
         assert!(floor.is_clear(&base, &placement), "{placement:?}");
-        drawn += 1;
+        drawn += mass;
         let base_from_tip = (placement.world_from_mobile() * mount).inv_mul(&world_from_tip);
-        reached += usize::from(arm.reach(&base_from_tip, 1, &mut scratch).is_some());
+        reached += if arm.reach(&base_from_tip, 1, &mut scratch).is_some() { mass } else { 0.0 };
     }
-    assert!(drawn >= 30 && reached * 100 >= drawn * 90, "{reached} of {drawn} bases reach");
+    assert!(count >= 100 && reached >= 0.9 * drawn, "{} of {count} bases reach", reached / drawn);
     let far = Pose::translation(0.0, 0.0, 50.0);
     assert!(bases.mass(0, &far) == 0.0 && bases.draw(0, &far, &mut rng).is_none());
 }
