@@ -15,6 +15,7 @@ import numpy as np
 FRICTIONS = (0.3, 0.8)
 SHIFT, TURN = 0.010, np.radians(5.0)
 FORCE, TORQUE = 40.0, 1.5
+STIFFNESS_SLIDING, STIFFNESS_TURNING = 4000.0, 60.0
 CLOSING_SECONDS, SHAKING_SECONDS = 0.6, 0.5
 STEP = 0.002
 
@@ -60,7 +61,7 @@ def model_xml(scene, friction, object_pose):
             )
     for dof, i in sorted(leads.items()):
         limit = FORCE if links[i]["joint"]["slides"] else TORQUE
-        stiff = 4000.0 if links[i]["joint"]["slides"] else 60.0
+        stiff = STIFFNESS_SLIDING if links[i]["joint"]["slides"] else STIFFNESS_TURNING
         actuators.append(
             f'<position name="a{dof}" joint="j{i}" kp="{stiff}" forcelimited="true" forcerange="{-limit} {limit}"/>'
         )
@@ -126,7 +127,9 @@ def shake(scene, grasp, friction, rng):
         if joint["leads"]:
             sign = closing[joint["dof"]]
             end = value if sign == 0 else joint["range"][1 if sign > 0 else 0]
-            lead_values[joint["dof"]] = end
+            # A drive pushes with all its force wherever the fingers stop, so it aims beyond its range.
+            beyond = FORCE / STIFFNESS_SLIDING if joint["slides"] else TORQUE / STIFFNESS_TURNING
+            lead_values[joint["dof"]] = end + sign * beyond
     for dof, end in lead_values.items():
         data.actuator(f"a{dof}").ctrl[0] = end
     for _ in range(int(CLOSING_SECONDS / STEP)):

@@ -49,7 +49,7 @@ struct StoredPart {
 impl Kind for ConvexParts {
     const NAME: &'static str = "convex_parts";
     const FORMAT: u32 = 1;
-    const ALGORITHM: u32 = 3;
+    const ALGORITHM: u32 = 4;
     const PORTABILITY: Portability = Portability::Portable;
     const DOC: &'static str = "Convex parts that cover the collision geometry of a link, object or obstacle. Collision checks compute with them.";
 

@@ -4,6 +4,7 @@
 
 mod closure;
 mod hull;
+mod strength;
 mod wrench;
 
 use nalgebra::{Point3, Unit, Vector3};
@@ -11,6 +12,7 @@ use robotc_core::Pose;
 
 pub use closure::closes;
 pub use hull::{Epsilon, epsilon, volume};
+pub use strength::{bears, strength};
 pub use wrench::{ContactModel, tangents, wrenches};
 
 /// A place where the closed gripper touches the object.
@@ -45,7 +47,7 @@ pub struct Grasp {
     pub volume: Option<f64>,
     /// How it stood disturbances of the object; `None` when that was not tested.
     pub steadiness: Option<Steadiness>,
-    /// What grasps are ranked by; larger is better.
+    /// What grasps are ranked by; larger is better: [`strength`] times the share of disturbed grasps that hold.
     pub score: f64,
 }
 
@@ -55,7 +57,8 @@ pub struct Steadiness {
     /// Standard deviation of the hand over the disturbed grasps, metres: of its position, plus that of its farthest moved link
     /// through the finger values. A grasp that slips deviates more than the object.
     pub deviation: f64,
-    /// Share of the disturbed grasps that closed again.
+    /// Share of the disturbed grasps whose open hand stays clear of the object where it was planned to stand, and which then close and
+    /// bear half of what the grasp bears.
     pub held: f64,
 }
 

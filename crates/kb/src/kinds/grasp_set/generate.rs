@@ -4,13 +4,18 @@ use nalgebra::Point3;
 use robotc_core::geom::{ConvexParts, MeshIndex};
 use robotc_core::model::TriMesh;
 use robotc_core::{Pose, Seed};
-use robotc_planning::grasp::{Contact, ContactModel, Grasp, Steadiness, closes, epsilon, volume, wrenches};
+use robotc_planning::grasp::{
+    Contact, ContactModel, Grasp, Steadiness, bears, closes, epsilon, strength, volume, wrenches,
+};
+use serde::{Deserialize, Serialize};
 
 use super::contacts::{PatchOptions, patch};
 use super::coverage::{DIRECTIONS, direction_range};
 use super::steadiness::{Regrasp, SteadinessOptions, deviation, disturbances};
+use super::stored::{Stored, StoredPose};
+use crate::kind::DecodeError;
 use crate::kinds::grip::hand::Hand;
-use crate::kinds::grip::strategy::{Approach, ClosedHand, Miss, Start, close_on};
+use crate::kinds::grip::strategy::{Approach, ClosedHand, Miss, Start, close_fingers, close_on, is_clear};
 use crate::kinds::grip::surface::{ApproachOptions, Surface, approaches};
 
 /// How a set is made.
@@ -70,11 +75,11 @@ pub(super) struct Candidate {
     start: Start,
 }
 
-/// What became of one approach.
-#[derive(Debug, Clone, PartialEq)]
+/// What became of one approach, as kept between the processes of one build.
+#[derive(Serialize, Deserialize)]
 pub(super) enum Trial {
-    /// Force closure.
-    Grasp(Box<Candidate>),
+    /// Force closure; where the hand started.
+    Grasp(Box<Stored>, StoredPose),
     /// The contacts do not close, or too weakly.
     NoClosure,
     /// The strategy gave no closed hand.
@@ -132,22 +137,25 @@ impl<'a> Generator<'a> {
             epsilon,
             volume: None,
             steadiness: None,
-            score: epsilon,
+            score: strength(&wrenches),
         };
-        Trial::Grasp(Box::new(Candidate { grasp, start }))
+        Trial::Grasp(Box::new(Stored::of(&grasp)), StoredPose::of(&start.object_from_tool))
     }
 
     /// The distinct candidates, and what became of the rest; `trials` in the order of the approaches. The best of every range
     /// of approach directions come in turn, so that the first of them have a grasp however the object lies and
     /// whatever stands around it.
-    pub(super) fn candidates(&self, trials: Vec<Trial>) -> (Vec<Candidate>, Counts) {
+    pub(super) fn candidates(&self, trials: Vec<Trial>) -> Result<(Vec<Candidate>, Counts), DecodeError> {
         let mut counts = Counts { tried: trials.len(), ..Counts::default() };
         let mut candidates = Vec::new();
         for trial in trials {
             match trial {
-                Trial::Grasp(candidate) => {
+                Trial::Grasp(grasp, object_from_tool) => {
                     counts.closed += 1;
-                    candidates.push(*candidate);
+                    let grasp = grasp.grasp()?;
+                    let (preshape, standoff) = (grasp.preshape, grasp.standoff);
+                    let start = Start { object_from_tool: object_from_tool.pose()?, preshape, standoff };
+                    candidates.push(Candidate { grasp, start });
                 }
                 Trial::NoClosure => counts.no_closure += 1,
                 Trial::Miss(Miss::NoTouch) => counts.no_touch += 1,
@@ -155,30 +163,43 @@ impl<'a> Generator<'a> {
                 Trial::Miss(Miss::PalmTouches | Miss::Inside) => counts.palm += 1,
             }
         }
-        (in_turns(distinct(candidates)), counts)
+        Ok((in_turns(distinct(candidates)), counts))
     }
 
     /// The grasp of a candidate with all its measures; `None` when it is fragile.
     pub(super) fn judge(&self, candidate: &Candidate) -> Option<Grasp> {
         let mut grasp = candidate.grasp.clone();
         if !self.disturbances.is_empty() {
-            let steadiness = self.steadiness(&candidate.start)?;
-            grasp.score = grasp.epsilon * steadiness.held;
+            let steadiness = self.steadiness(candidate)?;
+            grasp.score *= steadiness.held;
             grasp.steadiness = Some(steadiness);
         }
         grasp.volume = self.options.volumes.then(|| volume(&wrenches(&grasp.contacts, &self.contact)));
         Some(grasp)
     }
 
-    /// Grasps the disturbed object again and again, the hand starting from where it did; `None` when the grasp is fragile.
-    fn steadiness(&self, start: &Start) -> Option<Steadiness> {
+    /// Grasps the disturbed object again and again; `None` when the grasp is fragile.
+    ///
+    /// The hand opens where it was planned to stand, as one that sees the object elsewhere than it is will do. When it is not
+    /// clear there the grasp does not hold; how far the hand would deviate is then seen by coming in once more.
+    fn steadiness(&self, candidate: &Candidate) -> Option<Steadiness> {
+        let Candidate { grasp, start } = candidate;
+        let open = &self.hand.gripper().preshapes[start.preshape].values;
         let mut regrasps = Vec::with_capacity(self.disturbances.len());
         let mut held = 0;
         for object_from_disturbed in &self.disturbances {
-            let disturbed_from_tool = object_from_disturbed.inverse() * start.object_from_tool;
-            let start = Start { object_from_tool: disturbed_from_tool, ..*start };
-            let Ok(closed) = close_on(self.hand, self.object, &start) else { continue };
-            held += usize::from(closes(&wrenches(&self.contacts_of(&closed), &self.contact)));
+            let disturbed_from_object = object_from_disturbed.inverse();
+            let planned = disturbed_from_object * grasp.object_from_tool;
+            let clear = is_clear(self.hand, self.object, &planned, open);
+            let closed = if clear {
+                close_fingers(self.hand, self.object, planned, open)
+            } else {
+                let object_from_tool = disturbed_from_object * start.object_from_tool;
+                close_on(self.hand, self.object, &Start { object_from_tool, ..*start })
+            };
+            let Ok(closed) = closed else { continue };
+            let holds = || bears(&wrenches(&self.contacts_of(&closed), &self.contact), 0.5 * grasp.score);
+            held += usize::from(clear && holds());
             let tool = Point3::from((object_from_disturbed * closed.object_from_tool).translation.vector);
             regrasps.push(Regrasp { tool, closed: closed.closed });
         }
@@ -318,7 +339,7 @@ mod tests {
     }
 
     fn candidates_of(generator: &Generator) -> (Vec<Candidate>, Counts) {
-        generator.candidates(generator.approaches.iter().map(|a| generator.attempt(a)).collect())
+        generator.candidates(generator.approaches.iter().map(|a| generator.attempt(a)).collect()).unwrap()
     }
 
     #[test]
@@ -346,7 +367,7 @@ mod tests {
                 let steadiness = grasp.steadiness.unwrap();
                 // The hand follows the object, whose points move by up to 5 mm.
                 assert!(steadiness.deviation > 1e-4 && steadiness.deviation < 0.0072, "{steadiness:?}");
-                assert!(grasp.volume.unwrap() > 0.0 && grasp.score <= grasp.epsilon);
+                assert!(grasp.volume.unwrap() > 0.0 && grasp.score <= 1.0);
             }
             let held = kept.iter().map(|g| g.steadiness.unwrap().held).fold(0.0, f64::max);
             assert!(held > 0.9, "{held}");

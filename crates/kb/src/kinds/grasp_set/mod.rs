@@ -7,11 +7,9 @@ mod coverage;
 mod generate;
 #[cfg(feature = "build")]
 mod steadiness;
+mod stored;
 
-use nalgebra::{Point3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
-use robotc_core::Pose;
-use robotc_planning::grasp::{Contact, Grasp, Steadiness};
-use serde::{Deserialize, Serialize};
+use robotc_planning::grasp::Grasp;
 
 use crate::codec;
 use crate::graph::{Dep, PlanError, Planner};
@@ -19,6 +17,8 @@ use crate::kind::{DecodeError, Kind, Portability};
 use crate::kinds::ConvexParts;
 use crate::kinds::grip::{GripperInputs, diagonal};
 use crate::parameters::round_step;
+use stored::Stored;
+
 use crate::project::{OfGripperAndObject, OfObject, OfShape, Project, Subject};
 use crate::projection::Shapes;
 use crate::record::Parts;
@@ -27,8 +27,8 @@ use crate::record::Parts;
 ///
 /// Rays find points of the object's surface; the hand approaches each from several directions, with several turns,
 /// preshapes and standoffs, closes, and is kept when its contact patches resist every wrench (thesis section 4.2) and it is
-/// repeatable (algorithm 4.1). The best of all directions of approach are kept, ranked by epsilon times the share of disturbed
-/// grasps that close as well.
+/// repeatable (algorithm 4.1). The best of all directions of approach are kept, ranked by the force that
+/// they bear at the centre of mass times the share of disturbed grasps that bear half of it.
 pub struct GraspSet;
 
 /// What a grasp set is computed from.
@@ -91,8 +91,9 @@ crate::parameters! {
 impl Kind for GraspSet {
     const NAME: &'static str = "grasp_set";
     const FORMAT: u32 = 2;
-    const ALGORITHM: u32 = 5;
+    const ALGORITHM: u32 = 6;
     const PORTABILITY: Portability = Portability::Portable;
+    const IN_PIECES: bool = true;
     const DOC: &'static str =
         "The ways a gripper can hold an object: force-closure grasps with their contacts, best first.";
 
@@ -160,94 +161,6 @@ impl Kind for GraspSet {
     }
 }
 
-/// A grasp as stored: plain numbers, metres and radians.
-#[derive(Serialize, Deserialize)]
-struct Stored {
-    preshape: u32,
-    position: [f64; 3],
-    rotation: [f64; 4],
-    approach: [f64; 3],
-    standoff: f64,
-    closed: Vec<f64>,
-    contacts: Vec<[f64; 6]>,
-    epsilon: f64,
-    volume: Option<f64>,
-    steadiness: Option<[f64; 2]>,
-    score: f64,
-}
-
-impl Stored {
-    fn of(grasp: &Grasp) -> Self {
-        let contact = |c: &Contact| {
-            let (p, n) = (c.point_in_object, c.normal_in_object);
-            [p.x, p.y, p.z, n.x, n.y, n.z]
-        };
-        Self {
-            preshape: grasp.preshape as u32,
-            position: grasp.object_from_tool.translation.vector.into(),
-            rotation: grasp.object_from_tool.rotation.coords.into(),
-            approach: grasp.approach_in_object.into_inner().into(),
-            standoff: grasp.standoff,
-            closed: grasp.closed.clone(),
-            contacts: grasp.contacts.iter().map(contact).collect(),
-            epsilon: grasp.epsilon,
-            volume: grasp.volume,
-            steadiness: grasp.steadiness.map(|s| [s.deviation, s.held]),
-            score: grasp.score,
-        }
-    }
-
-    fn grasp(self) -> Result<Grasp, DecodeError> {
-        let contacts: Result<_, _> = self
-            .contacts
-            .iter()
-            .map(|&[x, y, z, i, j, k]| {
-                let normal_in_object = direction([i, j, k])?;
-                Ok(Contact { point_in_object: point([x, y, z])?, normal_in_object })
-            })
-            .collect();
-        let rotation = UnitQuaternion::new_unchecked(Quaternion::from(self.rotation));
-        if !rotation.norm().is_finite() || (rotation.norm() - 1.0).abs() > 1e-9 {
-            return Err(DecodeError::new("a rotation is not of unit length"));
-        }
-        let numbers = [self.standoff, self.epsilon, self.score];
-        let numbers = numbers.iter().chain(&self.closed).chain(&self.volume);
-        if !numbers.chain(self.steadiness.iter().flatten()).all(|x| x.is_finite()) {
-            return Err(DecodeError::new("a number is not finite"));
-        }
-        Ok(Grasp {
-            preshape: self.preshape as usize,
-            object_from_tool: Pose::from_parts(Translation3::from(point(self.position)?), rotation),
-            approach_in_object: direction(self.approach)?,
-            standoff: self.standoff,
-            closed: self.closed,
-            contacts: contacts?,
-            epsilon: self.epsilon,
-            volume: self.volume,
-            steadiness: self.steadiness.map(|[deviation, held]| Steadiness { deviation, held }),
-            score: self.score,
-        })
-    }
-}
-
-fn point(p: [f64; 3]) -> Result<Point3<f64>, DecodeError> {
-    if p.iter().all(|x| x.is_finite()) {
-        Ok(p.into())
-    } else {
-        Err(DecodeError::new("a point is not finite"))
-    }
-}
-
-fn direction(d: [f64; 3]) -> Result<Unit<Vector3<f64>>, DecodeError> {
-    let v = Vector3::from(d);
-    // Kept as stored: normalising again could change the last bit.
-    if (v.norm() - 1.0).abs() < 1e-9 {
-        Ok(Unit::new_unchecked(v))
-    } else {
-        Err(DecodeError::new("a direction is not of unit length"))
-    }
-}
-
 #[cfg(feature = "build")]
 mod build {
     use robotc_core::geom::{self, MeshIndex};
@@ -255,14 +168,21 @@ mod build {
     use robotc_planning::grasp::{ContactModel, closes, tangents, wrenches};
 
     use super::contacts::PatchOptions;
-    use super::generate::{GenerateOptions, Generator};
+    use super::generate::{Candidate, GenerateOptions, Generator};
     use super::steadiness::SteadinessOptions;
+    use nalgebra::{Point3, Vector3};
+
     use super::*;
     use crate::kind::{Build, BuildError, Context};
     use crate::kinds::grip::surface::ApproachOptions;
 
     /// Grasps that are judged before it is asked whether there are enough.
     const JUDGED_AT_ONCE: usize = 256;
+
+    /// A piece that another process left is sealed: only a fault of this program makes it unreadable.
+    fn damaged(error: DecodeError) -> BuildError {
+        BuildError::Check(error.to_string())
+    }
 
     fn options(p: &GraspParameters, gripper: &Gripper) -> GenerateOptions {
         let steps = p.standoffs.max(2) - 1;
@@ -313,12 +233,16 @@ mod build {
             let centre = centre_of_volume(&object_parts);
             let generator = Generator::new(&hand, &mesh, &object_parts, centre, &options, context.seed())
                 .ok_or_else(|| BuildError::Impossible("the object has no surface".into()))?;
-            let trials = context.map(&generator.approaches, |_, approach| generator.attempt(approach))?;
-            let (candidates, _) = generator.candidates(trials);
+            let trials =
+                context.map_in_pieces("trials", &generator.approaches, |_, a| generator.attempt(a))?;
+            let (candidates, _) = generator.candidates(trials).map_err(damaged)?;
             let mut grasps = Vec::new();
-            for some in candidates.chunks(JUDGED_AT_ONCE) {
+            for (i, some) in candidates.chunks(JUDGED_AT_ONCE).enumerate() {
                 if grasps.len() < parameters.most_grasps as usize {
-                    grasps.extend(context.map(some, |_, c| generator.judge(c))?.into_iter().flatten());
+                    let judge = |_, c: &Candidate| generator.judge(c).as_ref().map(Stored::of);
+                    let judged = context.map_in_pieces(&format!("judged-{i}"), some, judge)?;
+                    let judged = judged.into_iter().flatten().map(Stored::grasp);
+                    grasps.extend(judged.collect::<Result<Vec<_>, _>>().map_err(damaged)?);
                 }
             }
             grasps.truncate(parameters.most_grasps as usize);

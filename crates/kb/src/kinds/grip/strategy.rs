@@ -7,6 +7,7 @@ use nalgebra::{Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use robotc_core::Pose;
 use robotc_core::geom::{ConvexParts, any_within, separation};
 use robotc_planning::grasp::tangents;
+use serde::{Deserialize, Serialize};
 
 use super::advance::{TOUCH, close_drive, first_touch};
 use super::hand::Hand;
@@ -48,7 +49,7 @@ pub(crate) struct ClosedHand {
 }
 
 /// Why an approach gave no closed hand.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Miss {
     /// The hand never came near the object.
     NoTouch,
@@ -93,8 +94,22 @@ pub(crate) fn close_on(hand: &Hand, object: &ConvexParts, start: &Start) -> Resu
     close_fingers(hand, object, back * start.object_from_tool, open)
 }
 
+/// Whether a hand with these finger values stands clear of the object.
+pub(crate) fn is_clear(hand: &Hand, object: &ConvexParts, object_from_tool: &Pose, values: &[f64]) -> bool {
+    let object_from_palm = object_from_tool * hand.gripper().palm_from_tool.inverse();
+    let mut links = hand.links.iter().zip(hand.palm_from_links(values));
+    !links.any(|(link, palm_from_link)| {
+        any_within(object, &Pose::identity(), link.parts, &(object_from_palm * palm_from_link), 0.0)
+    })
+}
+
 /// Closes each drive until a link that it moves touches; a drive whose fingers oppose each other is centred.
-fn close_fingers(hand: &Hand, object: &ConvexParts, tool: Pose, open: &[f64]) -> Result<ClosedHand, Miss> {
+pub(crate) fn close_fingers(
+    hand: &Hand,
+    object: &ConvexParts,
+    tool: Pose,
+    open: &[f64],
+) -> Result<ClosedHand, Miss> {
     let gripper = hand.gripper();
     let tool_from_palm = gripper.palm_from_tool.inverse();
     let mut object_from_tool = tool;
