@@ -80,7 +80,7 @@ def test_types(solver):
     assert len(solutions) > 0
     for solution in solutions:
         np.testing.assert_allclose(elbow.fk(solution)[:3, 3], pose[:3, 3], atol=1e-9)
-    with pytest.raises(ValueError, match="there is no type 'ray'|no type \\"ray\\""):
+    with pytest.raises(ValueError, match='there is no type "ray"'):
         robotc.ik.generate(PANDA, "panda_link0", "panda_link4", type="ray")
 
 
