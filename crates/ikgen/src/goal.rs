@@ -267,6 +267,7 @@ impl GoalType {
     }
 
     /// Variables of the extended chain that the caller gives, besides free joints; `joints` is the number of the chain's own.
+    #[cfg(feature = "generate")]
     pub(crate) fn given_variables(self, joints: usize) -> Vec<usize> {
         let given = self.added().into_iter().enumerate().filter(|(_, a)| a.given);
         given.map(|(k, _)| joints + k).collect()
@@ -278,6 +279,7 @@ impl GoalType {
     }
 
     /// Values of the added joints at which they turn nothing.
+    #[cfg(feature = "generate")]
     pub(crate) fn at_rest(self) -> Vec<f64> {
         self.added().iter().map(|a| -a.offset / a.multiplier).collect()
     }
