@@ -3,23 +3,21 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use robotc_core::urdf::{self, LoadOptions, MeshPolicy};
 use robotc_core::{Kinematics, SerialChain, Sources};
 use robotc_ikgen::generate::natural;
-use robotc_ikgen::{Compiled, GoalType, Options, RustOptions, Solver, compile};
+use robotc_ikgen::{Compiled, GoalType, Options, RustOptions, compile};
 use robotc_kb::os::OsSystem;
 
 use crate::errors::{CompileError, accept};
-use crate::solving::{self, Wanted, WantedLimits};
+use crate::inverse::InverseKinematics;
 
 /// A solver of one chain, usable at once, and its source.
-#[pyclass(frozen, module = "robotc.ik")]
+#[pyclass(frozen, extends = InverseKinematics, module = "robotc.ik")]
 pub(crate) struct GeneratedSolver {
     compiled: Compiled,
-    solver: Solver,
 }
 
 /// Compiles the chain from link `base` to link `tip` of a URDF or xacro file; `free` names joints whose values will be
@@ -39,7 +37,7 @@ pub(crate) fn generate_ik(
     r#type: &str,
     packages: Option<BTreeMap<String, PathBuf>>,
     arguments: Option<BTreeMap<String, String>>,
-) -> PyResult<GeneratedSolver> {
+) -> PyResult<Py<GeneratedSolver>> {
     let mut sources = Sources::new();
     let load = LoadOptions {
         packages: packages.unwrap_or_default(),
@@ -84,7 +82,11 @@ pub(crate) fn generate_ik(
     }
     let compiled =
         py.detach(|| compile(&chain, &options)).map_err(|refusal| CompileError::new_err(refusal.reason))?;
-    Ok(GeneratedSolver { solver: compiled.solver(), compiled })
+    let variables = &compiled.longer_chain().variables;
+    let free_joints = compiled.free.iter().map(|&i| variables[i].name.clone()).collect();
+    let solves =
+        InverseKinematics { chain: compiled.chain().clone(), solver: compiled.solver(), free_joints };
+    Py::new(py, PyClassInitializer::from(solves).add_subclass(GeneratedSolver { compiled }))
 }
 
 #[pymethods]
@@ -99,60 +101,6 @@ impl GeneratedSolver {
     #[getter]
     fn r#type(&self) -> &'static str {
         self.compiled.program.goal.name()
-    }
-
-    #[getter]
-    fn joint_names(&self) -> Vec<String> {
-        self.compiled.chain().variables.iter().map(|v| v.name.clone()).collect()
-    }
-
-    #[getter]
-    fn free_joints(&self) -> Vec<String> {
-        let variables = &self.compiled.longer_chain().variables;
-        self.compiled.free.iter().map(|&i| variables[i].name.clone()).collect()
-    }
-
-    /// A row for each solution. `pose` is `base_from_tip`, a 4 x 4 matrix; `free` the values of the free joints; the rest chooses
-    /// among the solutions.
-    #[pyo3(signature = (
-        pose, free = Vec::new(), *, limits = WantedLimits::Described(false), near = None, weights = Vec::new(),
-        all_aliases = false, max_solutions = None
-    ), text_signature = "(self, pose, free=(), *, limits=False, near=None, weights=(), all_aliases=False, max_solutions=None)")]
-    #[allow(clippy::too_many_arguments, reason = "they are keywords")]
-    fn solve<'py>(
-        &self,
-        py: Python<'py>,
-        pose: PyReadonlyArray2<'py, f64>,
-        free: Vec<f64>,
-        limits: WantedLimits,
-        near: Option<Vec<f64>>,
-        weights: Vec<f64>,
-        all_aliases: bool,
-        max_solutions: Option<usize>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let wanted = Wanted { limits, near, weights, all_aliases, max_solutions };
-        solving::solve(py, &self.solver, &self.free_joints(), &pose, &free, wanted)
-    }
-
-    /// Values of a free joint for which the pose has solutions within limits.
-    #[pyo3(
-        signature = (pose, joint = None, free = Vec::new(), limits = WantedLimits::Described(true)),
-        text_signature = "(self, pose, joint=None, free=(), limits=True)"
-    )]
-    fn free_intervals<'py>(
-        &self,
-        py: Python<'py>,
-        pose: PyReadonlyArray2<'py, f64>,
-        joint: Option<&str>,
-        free: Vec<f64>,
-        limits: WantedLimits,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, f64)> {
-        solving::free_intervals(py, &self.solver, &self.free_joints(), &pose, joint, free, limits)
-    }
-
-    /// `base_from_tip` at these joint values, as a 4 x 4 matrix.
-    fn fk<'py>(&self, py: Python<'py>, joints: Vec<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        solving::forward(py, self.compiled.chain(), &joints)
     }
 
     /// Writes the solver to a file: Rust (`.rs`), C with its header beside it (`.c`), or the solution program (`.ik`).

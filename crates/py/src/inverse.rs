@@ -14,10 +14,12 @@ use crate::errors::CompileError;
 use crate::solving::{self, Wanted, WantedLimits};
 
 /// All joint vectors of an arm that reach a pose.
-#[pyclass(frozen, module = "robotc")]
+#[pyclass(frozen, subclass, module = "robotc")]
 pub(crate) struct InverseKinematics {
-    chain: SerialChain,
-    solver: Solver,
+    pub(crate) chain: SerialChain,
+    pub(crate) solver: Solver,
+    /// Joints whose values are given, in the order in which they are.
+    pub(crate) free_joints: Vec<String>,
 }
 
 impl InverseKinematics {
@@ -37,7 +39,9 @@ impl InverseKinematics {
         let chain = SerialChain::between(&kinematics, arm.base, arm.tip).map_err(|e| failed(&e))?;
         let program = knowledge.load::<IkSolver>(&OfArm(index)).map_err(|e| failed(&e))?;
         let solver = Solver::new((*program).clone(), &chain).map_err(|e| failed(&e))?;
-        Ok(Self { chain, solver })
+        let free = solver.free_variables().iter();
+        let free_joints = free.map(|&i| chain.variables[i].name.clone()).collect();
+        Ok(Self { chain, solver, free_joints })
     }
 }
 
@@ -49,9 +53,8 @@ impl InverseKinematics {
     }
 
     #[getter]
-    fn free_joints(&self) -> Vec<String> {
-        let free = self.solver.free_variables().iter();
-        free.map(|&i| self.chain.variables[i].name.clone()).collect()
+    fn free_joints(&self) -> &[String] {
+        &self.free_joints
     }
 
     /// A row for each solution. `pose` is `base_from_tip`, a 4 x 4 matrix; `free` the values of the free joints; the rest chooses
@@ -73,7 +76,7 @@ impl InverseKinematics {
         max_solutions: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let wanted = Wanted { limits, near, weights, all_aliases, max_solutions };
-        solving::solve(py, &self.solver, &self.free_joints(), &pose, &free, wanted)
+        solving::solve(py, &self.solver, &self.free_joints, &pose, &free, wanted)
     }
 
     /// Values of a free joint for which the pose has solutions within limits.
@@ -89,7 +92,7 @@ impl InverseKinematics {
         free: Vec<f64>,
         limits: WantedLimits,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, f64)> {
-        solving::free_intervals(py, &self.solver, &self.free_joints(), &pose, joint, free, limits)
+        solving::free_intervals(py, &self.solver, &self.free_joints, &pose, joint, free, limits)
     }
 
     /// `base_from_tip` at these joint values, as a 4 x 4 matrix.

@@ -122,7 +122,7 @@ class InverseKinematics:
     def joint_names(self) -> list[str]: ...
     @property
     def free_joints(self) -> list[str]:
-        """Joints whose value `solve` is given."""
+        """Joints whose value `solve` is given, then what the goal type has given besides."""
     def solve(
         self,
         pose: Array,
