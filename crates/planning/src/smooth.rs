@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::budget::Budget;
 use crate::edge::EdgeChecker;
-use crate::space::Space;
 
 /// One pass over a path. Passes keep the ends, never make the path longer, and add only edges that were checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -79,8 +78,8 @@ fn shortcut<C: EdgeChecker + ?Sized>(
         }
         let length = checker.space().length(path);
         let (s, t) = (rng.unit() * length, rng.unit() * length);
-        let (edge_a, a) = point_at(checker.space(), path, s.min(t));
-        let (edge_b, b) = point_at(checker.space(), path, s.max(t));
+        let (edge_a, a) = checker.space().point_at(path, s.min(t));
+        let (edge_b, b) = checker.space().point_at(path, s.max(t));
         if edge_a == edge_b {
             continue;
         }
@@ -95,18 +94,6 @@ fn shortcut<C: EdgeChecker + ?Sized>(
             failures += 1;
         }
     }
-}
-
-/// The point at distance `along` from the start, and the edge it is on.
-fn point_at(space: &Space, path: &[Vec<f64>], mut along: f64) -> (usize, Vec<f64>) {
-    for (edge, pair) in path.windows(2).enumerate() {
-        let length = space.distance(&pair[0], &pair[1]);
-        if along < length {
-            return (edge, space.interpolate(&pair[0], &pair[1], along / length));
-        }
-        along -= length;
-    }
-    (path.len() - 2, path[path.len() - 1].clone())
 }
 
 #[cfg(test)]

@@ -142,6 +142,18 @@ impl Space {
     pub fn length(&self, path: &[Vec<f64>]) -> f64 {
         path.windows(2).map(|w| self.distance(&w[0], &w[1])).sum()
     }
+
+    /// The point of a path at distance `along` from its start, its end beyond that, and the edge that it is on.
+    pub(crate) fn point_at(&self, path: &[Vec<f64>], mut along: f64) -> (usize, Vec<f64>) {
+        for (edge, pair) in path.windows(2).enumerate() {
+            let length = self.distance(&pair[0], &pair[1]);
+            if along < length {
+                return (edge, self.interpolate(&pair[0], &pair[1], along / length));
+            }
+            along -= length;
+        }
+        (path.len() - 2, path[path.len() - 1].clone())
+    }
 }
 
 impl Axis {
