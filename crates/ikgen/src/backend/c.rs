@@ -8,11 +8,11 @@ use crate::ir::{Block, Expr, Program, RootKind, Stmt, Value};
 use crate::kernel::chain::Frame;
 use crate::run::TrueChain;
 
-/// The numeric kernel by sections, `/* == name == */` before each.
-const KERNEL: &str = include_str!("kernel.c");
+/// The numeric kernel by sections, `/* == name == */` before each: what most solvers take, and what eigenvalues are for.
+const KERNEL: [&str; 2] = [include_str!("kernel.c"), include_str!("kernel_general.c")];
 
 /// What each section calls, itself in the order of the file.
-const SECTIONS: [(&str, &[&str]); 21] = [
+const SECTIONS: [(&str, &[&str]); 29] = [
     ("sqrt", &[]),
     ("abs", &[]),
     ("finite", &[]),
@@ -32,6 +32,14 @@ const SECTIONS: [(&str, &[&str]); 21] = [
     ("circle", &["roots", "sqrt", "finite", "apart", "abs"]),
     ("quadratic", &["roots", "sqrt", "abs"]),
     ("conic", &["circle"]),
+    ("eigen", &["sqrt", "abs"]),
+    ("atan2", &["abs", "finite"]),
+    ("waves", &["eigen", "atan2", "cos_sin"]),
+    ("octic", &["waves", "roots"]),
+    ("vector", &["sqrt", "finite", "cos_sin"]),
+    ("elimination", &["vector", "waves"]),
+    ("null", &["elimination", "circle"]),
+    ("six", &["null"]),
     ("chain", &["sqrt", "abs", "finite", "cos_sin"]),
     ("candidate", &["chain", "angle_of"]),
 ];
@@ -51,9 +59,6 @@ pub enum CError {
     /// The name is not one of C.
     #[error("{0:?} cannot name C functions: letters, digits and underscores are possible, a letter first")]
     Name(String),
-    /// The general solver of six joints, or an equation with eight roots: both need eigenvalues.
-    #[error("the general solver of six joints has no C form yet; the Rust form has it")]
-    Six,
 }
 
 /// Header and source of a program; `name` is the prefix of all that they export, and the stem of the files.
@@ -62,24 +67,10 @@ pub fn c_source(program: &Program, chain: &TrueChain, name: &str) -> Result<CSou
     if !starts || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
         return Err(CError::Name(name.into()));
     }
-    let program = &Program { body: without_general_rest(&program.body), ..program.clone() };
-    if program.uses(RootKind::Six) || program.uses(RootKind::Octic) {
-        return Err(CError::Six);
-    }
     let program = &crate::passes::prepare(program, chain);
     let mut body = String::new();
     block(program, &program.body, 1, &mut 0, &mut body);
     Ok(CSource { header: header(program, chain, name), source: source(program, chain, name, &body) })
-}
-
-/// The statements without what the general solver of six joints does where the others give nothing: it has no C form yet.
-fn without_general_rest(block: &Block) -> Block {
-    let general = |stmt: &Stmt| matches!(stmt, Stmt::ForEach { kind: RootKind::Six, .. });
-    let each = |stmt: &Stmt| match stmt {
-        Stmt::Fallback { first, otherwise } if otherwise.iter().any(general) => without_general_rest(first),
-        other => vec![other.clone()],
-    };
-    block.iter().flat_map(each).collect()
 }
 
 fn about(program: &Program) -> String {
@@ -154,13 +145,14 @@ fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> Strin
     } else {
         format!("    ik_reach(&{name}_described, values, base_from_tip, axes);\n")
     };
+    let most_roots = if program.uses(RootKind::Octic) { 8 } else { 4 };
     let mut out = about(program);
     let _ = write!(
         out,
         "\n#include \"{name}.h\"\n\n#include <math.h>\n#include <stdint.h>\n\n\
          /* Compile without contraction of products and sums (gcc and clang: -ffp-contract=off) for the same bits everywhere;\n   \
          with IK_FREESTANDING nothing of the C library is called. */\n\n\
-         #define IK_JOINTS {upper}_VARIABLES\n#define IK_VARIABLES {all}\n#define IK_LINKS {upper}_LINKS\n#define IK_CAPACITY {upper}_CAPACITY\n\
+         #define IK_JOINTS {upper}_VARIABLES\n#define IK_VARIABLES {all}\n#define IK_LINKS {upper}_LINKS\n#define IK_CAPACITY {upper}_CAPACITY\n#define IK_MOST_ROOTS {most_roots}\n\
          typedef {name}_frame ik_frame;\ntypedef {name}_link ik_link;\ntypedef {name}_chain ik_chain;\ntypedef {name}_solutions ik_solutions;\n\n"
     );
     let flags = |flags: Vec<bool>| {
@@ -195,7 +187,8 @@ fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> Strin
     described(chain, name, &mut out);
     for (section, _) in SECTIONS.iter().filter(|(section, _)| needed(section, body)) {
         let start = format!("/* == {section} == */\n");
-        let text = KERNEL.split(&start).nth(1).expect("every section is in the file");
+        let text =
+            KERNEL.iter().find_map(|file| file.split(&start).nth(1)).expect("every section is in a file");
         let text = text.split("/* == ").next().expect("split gives one at least");
         let text = if added { text.to_owned() } else { without_added(text) };
         let _ = write!(out, "{}\n\n", text.trim_end());
@@ -288,6 +281,14 @@ fn text(p: &Program, e: Expr) -> String {
     out + rest
 }
 
+/// An array of arguments, a few on a line.
+fn numbers(p: &Program, args: &[Expr], k: usize, pad: &str, out: &mut String) {
+    let list: Vec<String> = args.iter().map(|e| text(p, *e)).collect();
+    let lines: Vec<String> = list.chunks(6).map(|line| format!("{pad}    {}", line.join(", "))).collect();
+    let _ =
+        writeln!(out, "{pad}const double numbers{k}[{}] = {{\n{}\n{pad}}};", list.len(), lines.join(",\n"));
+}
+
 fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut String) {
     let pad = "    ".repeat(depth);
     for stmt in stmts {
@@ -298,10 +299,38 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
             Stmt::Let { var, value } => {
                 let _ = writeln!(out, "{pad}const double {} = {};", p.name(*var), text(p, *value));
             }
+            Stmt::ForEach { kind: RootKind::Six, args, out: names, body } => {
+                *loops += 1;
+                let k = *loops;
+                numbers(p, args, k, &pad, out);
+                let _ = write!(
+                    out,
+                    "{pad}ik_candidates roots{k};\n{pad}int i{k};\n{pad}ik_six(numbers{k}, slack - {:?}, &roots{k});\n\
+                     {pad}for (i{k} = 0; i{k} < roots{k}.count; i{k}++) {{\n",
+                    p.slack
+                );
+                let mut inner = String::new();
+                block(p, body, depth + 1, loops, &mut inner);
+                for (i, name) in
+                    names.iter().map(|v| p.name(*v)).enumerate().filter(|(_, n)| mentions(&inner, n))
+                {
+                    let part = if i % 2 == 0 { "c" } else { "s" };
+                    let _ = writeln!(
+                        out,
+                        "{pad}    const double {name} = roots{k}.turns[i{k}][{}].{part};",
+                        i / 2
+                    );
+                }
+                let _ = writeln!(out, "{inner}{pad}}}");
+            }
             Stmt::ForEach { kind, args, out: names, body } => {
                 *loops += 1;
                 let k = *loops;
-                let args: Vec<String> = args.iter().map(|e| text(p, *e)).collect();
+                let mut list: Vec<String> = args.iter().map(|e| text(p, *e)).collect();
+                if *kind == RootKind::Octic {
+                    numbers(p, args, k, &pad, out);
+                    list = vec![format!("numbers{k}")];
+                }
                 let mut inner = String::new();
                 block(p, body, depth + 1, loops, &mut inner);
                 let _ = write!(
@@ -309,7 +338,7 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                     "{pad}const ik_roots roots{k} = ik_{}({}, slack);\n{pad}const int before{k} = sink->accepted;\n{pad}int i{k};\n\
                      {pad}for (i{k} = 0; i{k} < ik_count(&roots{k}); i{k}++) {{\n{pad}    double root{k}[2];\n",
                     kind.word(),
-                    args.join(", ")
+                    list.join(", ")
                 );
                 let take = format!(
                     "{pad}    if (roots{k}.is_free && sink->accepted > before{k}) break;\n{pad}    ik_get(&roots{k}, i{k}, root{k});\n"

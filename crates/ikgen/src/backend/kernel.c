@@ -154,14 +154,14 @@ static double ik_mirrored(double angle) { return angle < 3.141592653589793 ? -an
 /* The roots of an equation, each cosine and sine of an angle, or a length. Of an unknown that is free later ones are tried only
    while none has led to a solution. */
 typedef struct {
-    double items[4][2];
+    double items[IK_MOST_ROOTS][2];
     int count;
     int is_free;
 } ik_roots;
 
 static void ik_push(ik_roots *roots, double x, double y)
 {
-    if (roots->count < 4) {
+    if (roots->count < IK_MOST_ROOTS) {
         roots->items[roots->count][0] = x;
         roots->items[roots->count][1] = y;
         roots->count++;
@@ -521,7 +521,7 @@ static void ik_solve_symmetric(double m[IK_VARIABLES][IK_VARIABLES], double righ
 static double ik_polish(const ik_chain *chain, const ik_frame *pose, double values[IK_VARIABLES])
 {
     double at[IK_VARIABLES], best = HUGE_VAL, halved = HUGE_VAL;
-    int round, i, j, k, since = 0;
+    int round, i, j, k, since = 0, patience = 20;
     for (i = 0; i < IK_VARIABLES; i++) at[i] = values[i];
     for (round = 0; round < 50; round++) {
         double axes[IK_LINKS][6], columns[IK_VARIABLES][6] = { { 0.0 } }, error[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
@@ -547,6 +547,8 @@ static double ik_polish(const ik_chain *chain, const ik_frame *pose, double valu
             }
         }
         distance = ik_distance(&tip, pose);
+        /* What starts near lacks digits alone. */
+        if (round == 0 && distance < 1e-7) patience = 4;
         if (distance < best) {
             int converged = distance < 1e-10 && distance > 0.1 * best;
             best = distance;
@@ -559,7 +561,7 @@ static double ik_polish(const ik_chain *chain, const ik_frame *pose, double valu
         if (best <= 0.5 * halved) {
             halved = best;
             since = 0;
-        } else if (since >= 20) {
+        } else if (since >= patience) {
             break;
         }
         for (i = 0; i < IK_VARIABLES; i++) {

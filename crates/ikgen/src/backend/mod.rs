@@ -1,6 +1,7 @@
 //! Solution programs as source code.
 
 mod c;
+mod prune;
 mod rust;
 
 pub use c::{CError, CSource, c_source};

@@ -2,13 +2,11 @@
 
 use std::fmt::Write as _;
 
-use super::CAPACITY;
+use super::{CAPACITY, prune};
 use crate::GoalType;
 use crate::ir::{Block, Expr, Program, RootKind, Stmt, Value};
 use crate::kernel::chain::Frame;
-use crate::kernel::{
-    CONIC_SOURCE, CORE_SQRT, EIGEN_SOURCES, OCTIC_SOURCE, PLATFORM_SQRT, SIX_SOURCES, SOURCES,
-};
+use crate::kernel::{CORE_SQRT, PLATFORM_SQRT, SOURCES};
 use crate::run::TrueChain;
 
 /// Choices of the Rust back end.
@@ -21,12 +19,16 @@ pub struct RustOptions {
 /// The source file. It may be a module of any crate, or a crate of its own.
 pub fn rust_source(program: &Program, chain: &TrueChain, options: &RustOptions) -> String {
     let program = &crate::passes::prepare(program, chain);
+    let mut code = String::new();
+    constants(program, chain, &mut code);
+    code += &api(program);
+    solve(program, &mut code);
     let mut out = String::new();
     header(program, &mut out);
-    constants(program, chain, &mut out);
-    out += &api(program);
-    solve(program, &mut out);
-    kernel(program, options, &mut out);
+    out += &prune::imports(USES, &code);
+    out.push('\n');
+    out += &code;
+    kernel(options, &mut out);
     out += &tests(program);
     out
 }
@@ -142,20 +144,19 @@ fn header(program: &Program, out: &mut String) {
             program.snap
         );
     }
-    out.push_str("\n#![allow(dead_code, unused_imports, unused_variables, clippy::all)]\n\n");
-    out.push_str(
-        "pub use chain::{Frame, Link};\nuse candidate::{Arm, MOST_MISSES, WIDER, is_exact};\n\
-         use math::{angle_of, cos_sin, mirrored, opposite, sqrt};\nuse roots::*;\n",
-    );
-    for (kind, line) in [
-        (RootKind::Conic, "use conic::conic;\n"),
-        (RootKind::Octic, "use octic::octic;\n"),
-        (RootKind::Six, "use six::six_of;\n"),
-    ] {
-        out.push_str(if program.uses(kind) { line } else { "" });
-    }
-    out.push('\n');
+    out.push_str("\n#![allow(dead_code, unused_variables, clippy::all)]\n\n");
 }
+
+/// What the file's own code may call.
+const USES: &str = "\
+pub use chain::{Frame, Link};
+use candidate::{Arm, MOST_MISSES, WIDER, is_exact};
+use conic::conic;
+use math::{angle_of, cos_sin, mirrored, opposite, sqrt};
+use octic::octic;
+use roots::{align, circle, half, mirror, quadratic};
+use six::six_of;
+";
 
 fn constants(program: &Program, chain: &TrueChain, out: &mut String) {
     let n = program.variables;
@@ -412,18 +413,16 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
     }
 }
 
-/// The kernel's files as modules, without their tests.
-fn kernel(program: &Program, options: &RustOptions, out: &mut String) {
-    let conic: &[(&str, &str)] = if program.uses(RootKind::Conic) { &[CONIC_SOURCE] } else { &[] };
-    let (octic, six) = (program.uses(RootKind::Octic), program.uses(RootKind::Six));
-    let eigen: &[(&str, &str)] = if octic || six { &EIGEN_SOURCES } else { &[] };
-    let octic: &[(&str, &str)] = if octic { &[OCTIC_SOURCE] } else { &[] };
-    let six: &[(&str, &str)] = if six { &SIX_SOURCES } else { &[] };
+/// What the code before calls of the kernel's files, as modules.
+fn kernel(options: &RustOptions, out: &mut String) {
     let sqrt = ("sqrt", if options.std { PLATFORM_SQRT } else { CORE_SQRT });
-    for (name, source) in [sqrt].iter().chain(&SOURCES).chain(conic).chain(eigen).chain(octic).chain(six) {
-        let code = source.split("#[cfg(test)]").next().unwrap_or(source);
+    let files: Vec<(&str, &str)> = std::iter::once(sqrt)
+        .chain(SOURCES)
+        .map(|(name, source)| (name, source.split("#[cfg(test)]").next().unwrap_or(source)))
+        .collect();
+    for (name, source) in prune::needed(&files, USES, &format!("{out}{TESTS}")) {
         let _ = writeln!(out, "mod {name} {{");
-        for line in code.trim_end().lines() {
+        for line in source.trim_end().lines() {
             let _ = if line.is_empty() { writeln!(out) } else { writeln!(out, "    {line}") };
         }
         out.push_str("}\n\n");

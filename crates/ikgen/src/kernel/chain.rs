@@ -14,6 +14,10 @@ pub const EXACT: f64 = 1e-10;
 /// Newton steps within which a polish must halve the distance that is left.
 const PATIENCE: usize = 20;
 
+/// The same for candidates that start this near: they lack digits alone. Where one root after the other of an unknown that is nearly
+/// free is tried, most of them miss by about this, and lead nowhere.
+const NEAR: (f64, usize) = (1e-7, 4);
+
 /// A rigid transform: rotation rows, then position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
@@ -113,9 +117,12 @@ pub fn polish(
     let mut at = [0.0; MAX_JOINTS];
     at[..n].copy_from_slice(values);
     let mut best = f64::INFINITY;
-    let (mut halved, mut since) = (f64::INFINITY, 0);
-    for _ in 0..50 {
+    let (mut halved, mut since, mut patience) = (f64::INFINITY, 0, PATIENCE);
+    for step in 0..50 {
         let (distance, error, columns) = linearise(links, last_from_tip, base_from_tip, &at[..n]);
+        if step == 0 && distance < NEAR.0 {
+            patience = NEAR.1;
+        }
         if distance < best {
             let converged = distance < EXACT && distance > 0.1 * best;
             best = distance;
@@ -129,7 +136,7 @@ pub fn polish(
         since += 1;
         if best <= 0.5 * halved {
             (halved, since) = (best, 0);
-        } else if since >= PATIENCE {
+        } else if since >= patience {
             break;
         }
         let damping = LEAST_DAMPING + 0.25 * distance * distance;

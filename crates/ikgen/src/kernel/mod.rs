@@ -22,31 +22,17 @@ pub mod sqrt_core;
 pub mod vector;
 pub mod waves;
 
-/// Source text of the kernel files, as generated files carry it; the square root comes in two kinds.
+/// Source text of the kernel files, as generated files carry what they call of it; the square root comes in two kinds.
 #[cfg(feature = "generate")]
-pub(crate) const SOURCES: [(&str, &str); 4] = [
+pub(crate) const SOURCES: [(&str, &str); 12] = [
     ("math", include_str!("math.rs")),
     ("roots", include_str!("roots.rs")),
     ("chain", include_str!("chain.rs")),
     ("candidate", include_str!("candidate.rs")),
-];
-
-/// Source text of the further file of programs with a quartic.
-#[cfg(feature = "generate")]
-pub(crate) const CONIC_SOURCE: (&str, &str) = ("conic", include_str!("conic.rs"));
-
-/// Source text of the further files of programs whose roots are eigenvalues.
-#[cfg(feature = "generate")]
-pub(crate) const EIGEN_SOURCES: [(&str, &str); 2] =
-    [("eigen", include_str!("eigen.rs")), ("waves", include_str!("waves.rs"))];
-
-/// Source text of the further file of programs with an equation of eight roots.
-#[cfg(feature = "generate")]
-pub(crate) const OCTIC_SOURCE: (&str, &str) = ("octic", include_str!("octic.rs"));
-
-/// Source text of the further files of programs that solve six joints in general.
-#[cfg(feature = "generate")]
-pub(crate) const SIX_SOURCES: [(&str, &str); 4] = [
+    ("conic", include_str!("conic.rs")),
+    ("eigen", include_str!("eigen.rs")),
+    ("waves", include_str!("waves.rs")),
+    ("octic", include_str!("octic.rs")),
     ("vector", include_str!("vector.rs")),
     ("elimination", include_str!("elimination.rs")),
     ("null", include_str!("null.rs")),

@@ -79,7 +79,7 @@ pub struct Bytecode {
     pub(super) constants: Vec<f64>,
     pub(super) registers: usize,
     /// Of the program: six joints in general are solved as they are described, without it.
-    slack: f64,
+    pub(super) slack: f64,
 }
 
 impl Bytecode {

@@ -1,6 +1,7 @@
 //! Execution of solution programs: an interpreter that is plainly right, a bytecode that is fast, and the solver
 //! that checks and polishes what either finds.
 
+mod batch;
 pub mod bytecode;
 mod families;
 pub mod interpreter;
@@ -9,9 +10,10 @@ mod redundancy;
 mod solver;
 mod true_chain;
 
+pub use batch::Batch;
 pub use bytecode::{Bytecode, Candidate, TooLarge};
 pub use redundancy::{Completeness, FreeIntervals, RedundancyOptions};
-pub use solver::{Batch, Engine, LoadError, Solver};
+pub use solver::{Engine, LoadError, Solver};
 pub use true_chain::TrueChain;
 
 use robotc_core::Pose;

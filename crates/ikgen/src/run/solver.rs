@@ -4,7 +4,6 @@ use robotc_core::Pose;
 use robotc_core::ik::{IkSolutions, InverseKinematics, PreferenceError, Preferences, VariableRange};
 use robotc_core::model::SerialChain;
 
-use super::lanes::{self, LANES, Wide};
 use super::{Bytecode, Candidate, TooLarge, TrueChain, Verdict, frame, interpreter};
 use crate::ir::{Program, TextError};
 use crate::kernel::candidate::{MOST_MISSES, WIDER, is_exact};
@@ -48,12 +47,12 @@ pub enum LoadError {
 /// is checked against it, after a polish where the two differ.
 #[derive(Debug, Clone)]
 pub struct Solver {
-    program: Program,
-    code: Bytecode,
+    pub(super) program: Program,
+    pub(super) code: Bytecode,
     pub(super) chain: TrueChain,
-    engine: Engine,
+    pub(super) engine: Engine,
     pub(super) held: [bool; MAX_JOINTS],
-    ranges: Vec<VariableRange>,
+    pub(super) ranges: Vec<VariableRange>,
     /// Smallest values of the joints that the goal type adds.
     least: [f64; MAX_JOINTS],
 }
@@ -159,20 +158,33 @@ impl Solver {
         if !numbers.all(|x| x.is_finite()) {
             return;
         }
+        if self.attempt(&frame, free, self.program.slack, out, enough) == 0 {
+            self.look_wider(&frame, free, out, enough);
+        }
+    }
+
+    /// Solutions of a pose that has none at the program's own slack.
+    pub(super) fn look_wider(
+        &self,
+        base_from_tip: &Frame,
+        free: &[f64],
+        out: &mut IkSolutions,
+        enough: &mut impl FnMut(&[f64]) -> bool,
+    ) {
         let wider = WIDER.into_iter().filter(|wider| *wider > self.program.slack);
-        for slack in std::iter::once(self.program.slack).chain(wider) {
-            if self.attempt(&frame, free, slack, out, enough) > 0 {
+        for slack in wider {
+            if self.attempt(base_from_tip, free, slack, out, enough) > 0 {
                 return;
             }
         }
     }
 
     /// Whether the joints that the goal type adds have values that are meant.
-    fn is_in_front(&self, values: &[f64]) -> bool {
+    pub(super) fn is_in_front(&self, values: &[f64]) -> bool {
         (self.ranges.len()..values.len()).all(|v| values[v] >= self.least[v] - TOLERANCE)
     }
 
-    fn attempt(
+    pub(super) fn attempt(
         &self,
         base_from_tip: &Frame,
         free: &[f64],
@@ -214,100 +226,6 @@ impl Solver {
                     let right = looks() && arm.settle(base_from_tip, steps, &mut values[..all]);
                     keep(right, &values[..all])
                 })
-            }
-        }
-    }
-}
-
-/// The solutions of many poses, in the order of the poses.
-#[derive(Debug, Clone, Default)]
-pub struct Batch {
-    width: usize,
-    values: Vec<f64>,
-    /// Where the solutions of each pose end.
-    ends: Vec<usize>,
-    /// Room for the next call.
-    registers: Vec<Wide>,
-}
-
-impl Batch {
-    /// Number of poses.
-    pub fn len(&self) -> usize {
-        self.ends.len()
-    }
-
-    /// Whether there is no pose.
-    pub fn is_empty(&self) -> bool {
-        self.ends.is_empty()
-    }
-
-    /// The solutions of a pose: joint vectors as [`InverseKinematics::solve`] gives them, in the same order.
-    pub fn solutions(&self, pose: usize) -> impl ExactSizeIterator<Item = &[f64]> {
-        let start = pose.checked_sub(1).map_or(0, |before| self.ends[before]);
-        self.values[start..self.ends[pose]].chunks_exact(self.width.max(1))
-    }
-}
-
-impl Solver {
-    /// All solutions of many poses: the same as one [`solve`](InverseKinematics::solve) each, faster.
-    ///
-    /// `free` holds the values of the free variables of one pose after the other.
-    pub fn solve_batch(&self, base_from_tip: &[Pose], free: &[f64], out: &mut Batch) {
-        self.batch(base_from_tip, free, out, false);
-    }
-
-    /// As [`solve_batch`](Self::solve_batch), but what has no solution at first sight is not looked at again with wider
-    /// slack: a pose at which several axes line up may come out empty. Fast where most poses are out of reach, and they were
-    /// drawn, or the free values were, so that singular ones do not matter.
-    pub fn solve_batch_once(&self, base_from_tip: &[Pose], free: &[f64], out: &mut Batch) {
-        self.batch(base_from_tip, free, out, true);
-    }
-
-    fn batch(&self, base_from_tip: &[Pose], free: &[f64], out: &mut Batch, once: bool) {
-        let (n, all, given) = (self.ranges.len(), self.program.variables, self.program.free.len());
-        assert_eq!(free.len(), given * base_from_tip.len(), "one value for each free variable of each pose");
-        out.width = n;
-        out.values.clear();
-        out.ends.clear();
-        let arm = self.chain.arm(&self.held[..all]);
-        let mut found: [IkSolutions; LANES] = Default::default();
-        let mut alone = IkSolutions::new();
-        // What the polish has to see anyway gains nothing.
-        let lanes_help = self.engine == Engine::Bytecode && self.program.snap == 0.0;
-        let found_cell = std::cell::RefCell::new(&mut found);
-        let mut run =
-            lanes::Run::new(&self.code, &mut out.registers, self.program.slack, |lane, values: &[f64]| {
-                let found = &mut found_cell.borrow_mut()[lane];
-                if !self.is_in_front(values) {
-                    return;
-                }
-                let values = &values[..n];
-                if !found.iter().any(|other| arm.same(values, other)) {
-                    found.push(values);
-                }
-            });
-        for (group, poses) in base_from_tip.chunks(LANES).enumerate() {
-            let first = group * LANES;
-            let given_of = |i: usize| &free[(first + i) * given..][..given];
-            found_cell.borrow_mut().iter_mut().for_each(|f| f.reset(n));
-            let frames: Vec<(Frame, &[f64])> =
-                poses.iter().enumerate().map(|(i, pose)| (frame(pose), given_of(i))).collect();
-            let (irregular, empty) = if lanes_help { run.run(&frames) } else { (u8::MAX, 0) };
-            for (i, pose) in poses.iter().enumerate() {
-                if (irregular | empty) >> i & 1 == 1 {
-                    alone.reset(n);
-                    if !once {
-                        self.solve(pose, given_of(i), &mut alone);
-                    } else if irregular >> i & 1 == 1 {
-                        self.attempt(&frames[i].0, given_of(i), self.program.slack, &mut alone, &mut |_| {
-                            false
-                        });
-                    }
-                    out.values.extend(alone.iter().flatten());
-                } else {
-                    out.values.extend(found_cell.borrow()[i].iter().flatten());
-                }
-                out.ends.push(out.values.len());
             }
         }
     }

@@ -4,12 +4,12 @@
 //! to 1e-9 (metres, and Frobenius norm of the rotation difference). Angles are radians in (-pi, pi], lengths metres;
 //! joint limits are not applied. Nothing allocates, and nothing panics.
 
-#![allow(dead_code, unused_imports, unused_variables, clippy::all)]
+#![allow(dead_code, unused_variables, clippy::all)]
 
 pub use chain::{Frame, Link};
 use candidate::{Arm, MOST_MISSES, WIDER, is_exact};
 use math::{angle_of, cos_sin, mirrored, opposite, sqrt};
-use roots::*;
+use roots::{align, circle, half};
 
 /// Number of variables.
 pub const VARIABLES: usize = 6;
@@ -478,65 +478,6 @@ mod math {
         }
     }
 
-    /// Angle of the vector (`x`, `y`) in (-pi, pi]; 0 for the zero vector.
-    ///
-    /// Folded to the first octant, turned back by the nearest of nine tabulated angles `atan(k/8)`, then a Taylor
-    /// polynomial on a ratio below 1/8. Table and ratio carry what their last place has rounded away.
-    pub fn atan2(y: f64, x: f64) -> f64 {
-        use core::f64::consts::{FRAC_PI_2, PI};
-        /// `atan(k/8)`, and its rest.
-        const EIGHTHS: [[f64; 2]; 9] = [
-            [0.0, 0.0],
-            [0.124_354_994_546_761_44, -3.125_324_142_453_938e-18],
-            [0.244_978_663_126_864_14, 1.069_875_561_873_445e-17],
-            [0.358_770_670_270_572_25, -2.462_381_558_263_863_5e-17],
-            [0.463_647_609_000_806_1, 2.269_877_745_296_168_7e-17],
-            [0.558_599_315_343_562_4, -5.455_630_548_591_626e-18],
-            [0.643_501_108_793_284_4, 1.583_478_505_144_428_6e-17],
-            [0.718_829_999_621_624_5, -2.147_838_844_445_698_3e-17],
-            [core::f64::consts::FRAC_PI_4, 3.061_616_997_868_383e-17],
-        ];
-        /// What the angle of the octant is added to, its rest, and with which sign: beyond the diagonal, left, both.
-        const OCTANTS: [[f64; 3]; 4] = [
-            [0.0, 0.0, 1.0],
-            [FRAC_PI_2, 6.123_233_995_736_766e-17, -1.0],
-            [PI, 1.224_646_799_147_353_2e-16, -1.0],
-            [FRAC_PI_2, 6.123_233_995_736_766e-17, 1.0],
-        ];
-        let (ax, ay) = (x.abs(), y.abs());
-        let (large, small) = if ax > ay { (ax, ay) } else { (ay, ax) };
-        // Quotients of numbers near the ends of the range lose digits.
-        if !(large > 1e-280 && large < 1e280) {
-            return match large {
-                _ if large == 0.0 || !(large < f64::INFINITY) => 0.0,
-                _ if large < 1.0 => atan2(y * 1e200, x * 1e200),
-                _ => atan2(y * 1e-200, x * 1e-200),
-            };
-        }
-        // No branch depends on the octant: it is as good as random.
-        let ratio = small / large;
-        let k = (ratio * 8.0 + 0.5) as usize * usize::from(ratio >= 0.125);
-        let tangent = k as f64 * 0.125;
-        let top = upper_half(large);
-        let over = (small - tangent * top) - tangent * (large - top);
-        let under = large + tangent * small;
-        let inverse = 1.0 / under;
-        let t = over * inverse;
-        let t_low = (over - t * under - product_rest(t, under)) * inverse;
-        let z = t * t;
-        let mut p = 1.0 / 17.0;
-        for d in [-15.0, 13.0, -11.0, 9.0, -7.0, 5.0, -3.0] {
-            p = 1.0 / d + z * p;
-        }
-        let [base, base_low, sign] = OCTANTS[usize::from(ay > ax) + 2 * usize::from(x < 0.0)];
-        let [table, table_low] = EIGHTHS[k];
-        let coarse = base + sign * table;
-        let fine = coarse + sign * t;
-        let rest = (sign * table - (coarse - base)) + (sign * t - (fine - coarse));
-        let angle = fine + (rest + (base_low + sign * (table_low + (t_low + t * z * p))));
-        if y < 0.0 { -angle } else { angle }
-    }
-
     /// Angle with this sine and cosine in (-pi, pi], within two places; faster than [`atan2`] as the point is on the unit circle.
     ///
     /// Folded to the first octant and turned back by the nearest of the angles with sine `k/16`; what is left is a small sine.
@@ -644,13 +585,6 @@ mod roots {
             if self.free { self.len + REPRESENTATIVES } else { self.len }
         }
 
-        /// The same, with room for more.
-        pub fn widened<const M: usize>(&self) -> Roots<M> {
-            let mut items = [[1.0, 0.0]; M];
-            items[..self.len].copy_from_slice(&self.items[..self.len]);
-            Roots { items, len: self.len, free: self.free }
-        }
-
         /// One of them.
         pub fn get(&self, i: usize) -> [f64; 2] {
             if i < self.len { self.items[i] } else { representative(i - self.len) }
@@ -679,15 +613,6 @@ mod roots {
         let mut roots = Roots::NONE;
         roots.free = n < VANISHING || n < slack;
         roots.push([x / n, y / n]);
-        roots
-    }
-
-    /// The two angles whose cosine is proportional to `x` and sine to plus or minus `y`.
-    pub fn mirror(x: f64, y: f64, slack: f64) -> Roots<2> {
-        let mut roots: Roots<2> = half(x, y, slack).widened();
-        if roots.len > 0 && roots.items[0][1] > VANISHING {
-            roots.push([roots.items[0][0], -roots.items[0][1]]);
-        }
         roots
     }
 
@@ -739,31 +664,6 @@ mod roots {
         }
         roots
     }
-
-    /// The lengths with `a t^2 + b t + c = 0`; a discriminant that misses zero by `slack` counts as zero.
-    pub fn quadratic(a: f64, b: f64, c: f64, slack: f64) -> Roots<2> {
-        let mut roots = Roots::NONE;
-        if a.abs() < VANISHING {
-            if b.abs() >= VANISHING {
-                roots.push([-c / b, 0.0]);
-            } else if c.abs() <= EDGE + slack {
-                roots.push([0.0, 0.0]);
-            }
-            return roots;
-        }
-        let (half, product) = (-0.5 * b / a, c / a);
-        let discriminant = half * half - product;
-        if !(discriminant >= -EDGE - slack) {
-            return roots;
-        }
-        let root = sqrt(discriminant);
-        let far = if half < 0.0 { half - root } else { half + root };
-        roots.push([far, 0.0]);
-        if root > 0.0 && far != 0.0 {
-            roots.push([product / far, 0.0]);
-        }
-        roots
-    }
 }
 
 mod chain {
@@ -782,6 +682,10 @@ mod chain {
 
     /// Newton steps within which a polish must halve the distance that is left.
     const PATIENCE: usize = 20;
+
+    /// The same for candidates that start this near: they lack digits alone. Where one root after the other of an unknown that is nearly
+    /// free is tried, most of them miss by about this, and lead nowhere.
+    const NEAR: (f64, usize) = (1e-7, 4);
 
     /// A rigid transform: rotation rows, then position.
     #[derive(Clone, Copy, Debug, PartialEq)]
@@ -882,9 +786,12 @@ mod chain {
         let mut at = [0.0; MAX_JOINTS];
         at[..n].copy_from_slice(values);
         let mut best = f64::INFINITY;
-        let (mut halved, mut since) = (f64::INFINITY, 0);
-        for _ in 0..50 {
+        let (mut halved, mut since, mut patience) = (f64::INFINITY, 0, PATIENCE);
+        for step in 0..50 {
             let (distance, error, columns) = linearise(links, last_from_tip, base_from_tip, &at[..n]);
+            if step == 0 && distance < NEAR.0 {
+                patience = NEAR.1;
+            }
             if distance < best {
                 let converged = distance < EXACT && distance > 0.1 * best;
                 best = distance;
@@ -898,7 +805,7 @@ mod chain {
             since += 1;
             if best <= 0.5 * halved {
                 (halved, since) = (best, 0);
-            } else if since >= PATIENCE {
+            } else if since >= patience {
                 break;
             }
             let damping = LEAST_DAMPING + 0.25 * distance * distance;

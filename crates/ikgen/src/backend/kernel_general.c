@@ -1,0 +1,1206 @@
+/* == eigen == */
+/* Largest matrix. */
+#define IK_SIZE 16
+
+/* Eigenvalues of { { a, b }, { c, d } }, each real and imaginary part. */
+static void ik_two_by_two(double a, double b, double c, double d, double out[2][2])
+{
+    double half = 0.5 * (a - d), middle = 0.5 * (a + d), square = half * half + b * c, far;
+    if (square < 0.0) {
+        out[0][0] = out[1][0] = middle;
+        out[0][1] = ik_sqrt(-square);
+        out[1][1] = -out[0][1];
+        return;
+    }
+    far = half < 0.0 ? half - ik_sqrt(square) : half + ik_sqrt(square);
+    out[0][0] = d + far;
+    out[1][0] = far < 0.0 || far > 0.0 ? d - b * c / far : d;
+    out[0][1] = out[1][1] = 0.0;
+}
+
+/* Reflects `n` rows and columns (two or three) from `k` on so that the vector comes to lie along the first of them; the columns from
+   `first` to `size`, the rows from `start` to `end`. */
+static void ik_reflect(double h[][IK_SIZE], int k, int n, const double vector[3], int first, int size, int start, int end)
+{
+    double x = vector[0], y = vector[1], z = n > 2 ? vector[2] : 0.0, norm = ik_sqrt(x * x + y * y + z * z);
+    double v, w, beta, sum;
+    int i;
+    if (!(norm > 0.0)) return;
+    if (x < 0.0) norm = -norm;
+    v = y / (x + norm);
+    w = z / (x + norm);
+    beta = (x + norm) / norm;
+    for (i = first; i < size; i++) {
+        sum = h[k][i] + v * h[k + 1][i];
+        if (n > 2) sum += w * h[k + 2][i];
+        h[k][i] -= beta * sum;
+        h[k + 1][i] -= beta * v * sum;
+        if (n > 2) h[k + 2][i] -= beta * w * sum;
+    }
+    for (i = start; i < end; i++) {
+        double *row = &h[i][k];
+        sum = row[0] + v * row[1];
+        if (n > 2) sum += w * row[2];
+        row[0] -= beta * sum;
+        row[1] -= beta * v * sum;
+        if (n > 2) row[2] -= beta * w * sum;
+    }
+}
+
+/* One implicit step on the rows from `start` to `size`, with the eigenvalues of the trailing two by two block as shifts; after some
+   sweeps only the one nearer to the corner, twice, if they are real. */
+static void ik_double_step(double h[][IK_SIZE], int start, int size, int sweep)
+{
+    int k = size - 2, l = size - 1, j = start + 1;
+    double trace = h[k][k] + h[l][l], determinant = h[k][k] * h[l][l] - h[k][l] * h[l][k], vector[3];
+    if (sweep % 10 == 0) {
+        /* Breaks the rare cycles. */
+        double s = ik_abs(h[l][k]) + ik_abs(h[k][k - 1]);
+        trace = 1.5 * s;
+        determinant = s * s;
+    } else if (sweep > 8) {
+        double values[2][2];
+        ik_two_by_two(h[k][k], h[k][l], h[l][k], h[l][l], values);
+        if (!(ik_abs(values[0][1]) > 0.0)) {
+            double shift = values[ik_abs(values[0][0] - h[l][l]) < ik_abs(values[1][0] - h[l][l]) ? 0 : 1][0];
+            trace = 2.0 * shift;
+            determinant = shift * shift;
+        }
+    }
+    /* The first column of (H - s1) (H - s2). */
+    vector[0] = h[start][start] * (h[start][start] - trace) + determinant + h[start][j] * h[j][start];
+    vector[1] = h[j][start] * (h[start][start] + h[j][j] - trace);
+    vector[2] = h[j][start] * h[start + 2][j];
+    for (k = start; k < size - 2; k++) {
+        ik_reflect(h, k, 3, vector, k > start ? k - 1 : k, size, start, k + 4 < size ? k + 4 : size);
+        if (k > start) h[k + 1][k - 1] = h[k + 2][k - 1] = 0.0;
+        vector[0] = h[k + 1][k];
+        vector[1] = h[k + 2][k];
+        vector[2] = k + 3 < size ? h[k + 3][k] : 0.0;
+    }
+    ik_reflect(h, size - 2, 2, vector, size - 3, size, start, size);
+    h[size - 1][size - 3] = 0.0;
+}
+
+/* Eigenvalues, real and imaginary part, of the leading n by n part of an upper Hessenberg matrix, which is destroyed; returns how many
+   were found. Francis's double-shift QR iteration (Golub and Van Loan, Matrix Computations, section 7.5). */
+static int ik_eigenvalues(double h[][IK_SIZE], int n, double found[][2])
+{
+    int count = 0, size = n, sweeps = 0, start, i, j;
+    double norm = 0.0, least;
+    for (i = 0; i < n; i++)
+        for (j = 0; j < n; j++)
+            if (ik_abs(h[i][j]) > norm) norm = ik_abs(h[i][j]);
+    least = 0.01 * norm;
+    while (size > 0) {
+        /* The trailing block that no negligible subdiagonal entry cuts. */
+        double negligible = 2.220446049250313e-16 * (double)(1 << (sweeps / 4));
+        for (start = size - 1; start > 0; start--) {
+            double scale = ik_abs(h[start - 1][start - 1]) + ik_abs(h[start][start]);
+            if (!(scale > least)) scale = least;
+            if (ik_abs(h[start][start - 1]) <= negligible * scale) {
+                h[start][start - 1] = 0.0;
+                break;
+            }
+        }
+        if (start + 1 == size) {
+            found[count][0] = h[start][start];
+            found[count][1] = 0.0;
+            count += 1;
+        } else if (start + 2 == size) {
+            ik_two_by_two(h[start][start], h[start][start + 1], h[start + 1][start], h[start + 1][start + 1], &found[count]);
+            count += 2;
+        } else {
+            sweeps++;
+            if (sweeps > 60) break;
+            ik_double_step(h, start, size, sweeps);
+            continue;
+        }
+        size = start;
+        sweeps = 0;
+    }
+    return count;
+}
+
+/* == atan2 == */
+/* The number without the lower half of its digits. */
+static double ik_upper_half(double x)
+{
+    union { double number; uint64_t bits; } top;
+    top.number = x;
+    top.bits &= UINT64_C(0xfffffffff8000000);
+    return top.number;
+}
+
+/* What the product has rounded away. */
+static double ik_product_rest(double a, double b)
+{
+    double a_top = ik_upper_half(a), b_top = ik_upper_half(b), a_low = a - a_top, b_low = b - b_top;
+    return ((a_top * b_top - a * b) + a_top * b_low + a_low * b_top) + a_low * b_low;
+}
+
+/* Angle of the vector (x, y) in (-pi, pi] within one unit in the last place, for vectors of ordinary length. Folded to the first octant,
+   turned back by the nearest of nine angles atan(k/8); table and ratio carry what their last place has rounded away. */
+static double ik_atan2(double y, double x)
+{
+    static const double eighths[9][2] = {
+        { 0.0, 0.0 },
+        { 0.12435499454676144, -3.125324142453938e-18 },
+        { 0.24497866312686414, 1.069875561873445e-17 },
+        { 0.35877067027057225, -2.4623815582638635e-17 },
+        { 0.4636476090008061, 2.2698777452961687e-17 },
+        { 0.5585993153435624, -5.455630548591626e-18 },
+        { 0.6435011087932844, 1.5834785051444286e-17 },
+        { 0.7188299996216245, -2.1478388444456983e-17 },
+        { 0.7853981633974483, 3.061616997868383e-17 }
+    };
+    static const double octants[4][3] = {
+        { 0.0, 0.0, 1.0 },
+        { 1.5707963267948966, 6.123233995736766e-17, -1.0 },
+        { 3.141592653589793, 1.2246467991473532e-16, -1.0 },
+        { 1.5707963267948966, 6.123233995736766e-17, 1.0 }
+    };
+    static const double odd[7] = { -15.0, 13.0, -11.0, 9.0, -7.0, 5.0, -3.0 };
+    double ax = ik_abs(x), ay = ik_abs(y), large = ax > ay ? ax : ay, small = ax > ay ? ay : ax;
+    double ratio, tangent, top, over, under, inverse, t, t_low, z, p, coarse, fine, rest, angle;
+    const double *octant, *table;
+    int k, i;
+    if (!(large > 1e-280 && large < 1e280)) {
+        if (!(large > 0.0) || !ik_finite(large)) return 0.0;
+        return large < 1.0 ? ik_atan2(y * 1e200, x * 1e200) : ik_atan2(y * 1e-200, x * 1e-200);
+    }
+    ratio = small / large;
+    k = ratio >= 0.125 ? (int)(ratio * 8.0 + 0.5) : 0;
+    tangent = k * 0.125;
+    top = ik_upper_half(large);
+    over = (small - tangent * top) - tangent * (large - top);
+    under = large + tangent * small;
+    inverse = 1.0 / under;
+    t = over * inverse;
+    t_low = (over - t * under - ik_product_rest(t, under)) * inverse;
+    z = t * t;
+    p = 1.0 / 17.0;
+    for (i = 0; i < 7; i++) p = 1.0 / odd[i] + z * p;
+    octant = octants[(ay > ax) + 2 * (x < 0.0)];
+    table = eighths[k];
+    coarse = octant[0] + octant[2] * table[0];
+    fine = coarse + octant[2] * t;
+    rest = (octant[2] * table[0] - (coarse - octant[0])) + (octant[2] * t - (fine - coarse));
+    angle = fine + (rest + (octant[1] + octant[2] * (table[1] + (t_low + t * z * p))));
+    return y < 0.0 ? -angle : angle;
+}
+
+/* == waves == */
+/* Highest multiple of the angle, and the number of samples that determine such a polynomial. */
+#define IK_DEGREE (IK_SIZE / 2)
+#define IK_SAMPLES (2 * IK_DEGREE + 1)
+
+/* A trigonometric polynomial by its waves: d[0] + 2 sum Re(d[k] e^(i k q)). */
+typedef struct {
+    double d[IK_DEGREE + 1][2];
+    int degree;
+    /* Largest sample in magnitude; `start` is half a turn before it. */
+    double largest;
+    double start;
+} ik_waves;
+
+/* Real part of an angle, and its imaginary part to first order. */
+typedef struct {
+    double angle;
+    double imaginary;
+} ik_root;
+
+/* Coefficients of the powers of t = tan((angle - start) / 2) in the polynomial times (1 + t^2)^degree. With u = 1 + i t and its
+   conjugate v that is a sum of u^j v^(2 degree - j), by Horner's scheme. */
+static void ik_powers(const ik_waves *waves, double powers[IK_SIZE + 1])
+{
+    double sum[IK_SIZE + 1][2] = { { 0.0 } }, conjugate[IK_SIZE + 1][2] = { { 0.0 } };
+    int n = waves->degree, m, i;
+    conjugate[0][0] = 1.0;
+    for (m = 0; m <= 2 * n; m++) {
+        int k = m < n ? n - m : m - n;
+        double turn[2], x, y;
+        ik_cos_sin((double)k * waves->start, turn);
+        x = waves->d[k][0] * turn[0] - waves->d[k][1] * turn[1];
+        y = waves->d[k][0] * turn[1] + waves->d[k][1] * turn[0];
+        /* From the highest wave down; those of negative number are conjugates. */
+        if (m > n) y = -y;
+        for (i = m; i >= 0; i--) {
+            double below[2] = { 0.0, 0.0 }, a = conjugate[i][0], b = conjugate[i][1];
+            if (i > 0) {
+                below[0] = -sum[i - 1][1];
+                below[1] = sum[i - 1][0];
+            }
+            /* The sum times u, and the wave times the power of v. */
+            if (m > 0) {
+                sum[i][0] = sum[i][0] + below[0];
+                sum[i][1] = sum[i][1] + below[1];
+            }
+            sum[i][0] = sum[i][0] + x * a - y * b;
+            sum[i][1] = sum[i][1] + x * b + y * a;
+        }
+        for (i = IK_SIZE; i > 0; i--) {
+            conjugate[i][0] = conjugate[i][0] + conjugate[i - 1][1];
+            conjugate[i][1] = conjugate[i][1] - conjugate[i - 1][0];
+        }
+    }
+    for (i = 0; i <= IK_SIZE; i++) powers[i] = sum[i][0];
+}
+
+/* The polynomial of half the degree whose square this one is, but for its sign. */
+static void ik_square_root(double powers[IK_SIZE + 1], int degree)
+{
+    double root[IK_SIZE + 1] = { 0.0 }, sign = powers[degree] < 0.0 ? -1.0 : 1.0, rest;
+    int half = degree / 2, k, i;
+    root[half] = ik_sqrt(ik_abs(powers[degree]));
+    for (k = half - 1; k >= 0; k--) {
+        rest = sign * powers[half + k];
+        for (i = k + 1; i < half; i++) rest -= root[i] * root[half + k - i];
+        root[k] = 0.5 * rest / root[half];
+    }
+    for (i = 0; i <= IK_SIZE; i++) powers[i] = root[i];
+}
+
+/* All roots; returns how many were found. Half a turn is moved to where the polynomial is largest, so that no root is at infinity in t;
+   the powers of t are scaled by square roots of binomial coefficients, which balances the companion matrix. With `squared` the
+   polynomial is known to be a square, and the roots are those of its root. */
+static int ik_roots_of_waves(const ik_waves *waves, int squared, ik_root *found)
+{
+    double powers[IK_SIZE + 1], weight[IK_SIZE + 1], companion[IK_SIZE][IK_SIZE] = { { 0.0 } }, values[IK_SIZE][2];
+    int size = 2 * waves->degree, count, k;
+    ik_powers(waves, powers);
+    if (squared) {
+        ik_square_root(powers, size);
+        size /= 2;
+    }
+    if (!(ik_abs(powers[size]) > 0.0 && ik_finite(powers[size]))) return 0;
+    weight[0] = 1.0;
+    for (k = 1; k <= size; k++) weight[k] = weight[k - 1] * ik_sqrt((double)(size + 1 - k) / (double)k);
+    for (k = 0; k < size; k++) companion[k][size - 1] = -weight[size - 1] * powers[k] / (weight[k] * powers[size]);
+    for (k = 1; k < size; k++) companion[k][k - 1] += weight[k - 1] / weight[k];
+    count = ik_eigenvalues(companion, size, values);
+    for (k = 0; k < count; k++) {
+        double x = values[k][0], y = values[k][1];
+        found[k].angle = waves->start + ik_atan2(2.0 * x, 1.0 - x * x - y * y);
+        found[k].imaginary = 2.0 * y / (1.0 + x * x);
+    }
+    return count;
+}
+
+/* == octic == */
+/* Value and the first two derivatives at a turn. */
+static void ik_bends(const ik_waves *waves, const double turn[2], double out[3])
+{
+    double x = 1.0, y = 0.0, along, across, next;
+    int k;
+    out[0] = waves->d[0][0];
+    out[1] = out[2] = 0.0;
+    for (k = 1; k <= waves->degree; k++) {
+        next = x * turn[0] - y * turn[1];
+        y = x * turn[1] + y * turn[0];
+        x = next;
+        along = 2.0 * (waves->d[k][0] * x - waves->d[k][1] * y);
+        across = 2.0 * (waves->d[k][0] * y + waves->d[k][1] * x);
+        out[0] += along;
+        out[1] -= (double)k * across;
+        out[2] -= (double)k * (double)k * along;
+    }
+}
+
+/* The root near an angle, or the extremum where two roots fall together, as cosine and sine; returns the value there. Newton steps. */
+static double ik_improved(const ik_waves *waves, double angle, int twice, double turn[2])
+{
+    double bends[3], step, x, y, n;
+    int i;
+    ik_cos_sin(angle, turn);
+    ik_bends(waves, turn, bends);
+    for (i = 0; i < (twice ? 4 : 2); i++) {
+        step = twice ? -bends[1] / bends[2] : -bends[0] / bends[1];
+        if (!(ik_abs(step) < 2e-2)) break;
+        x = turn[0] - turn[1] * step;
+        y = turn[1] + turn[0] * step;
+        n = ik_sqrt(x * x + y * y);
+        turn[0] = x / n;
+        turn[1] = y / n;
+        ik_bends(waves, turn, bends);
+        if (ik_abs(step) < 1e-9) break;
+    }
+    return bends[0];
+}
+
+/* The angles with a[0] + a[1] cos q + a[2] sin q + a[3] cos 2q + ... + a[8] sin 4q = 0: eigenvalues of a companion matrix, improved by
+   Newton steps. A pair of roots that rounding has split, or has moved off the real line, is where the sum has its extremum between
+   them. With slack so are pairs that are farther off the real line. */
+static ik_roots ik_octic(const double a[9], double slack)
+{
+    static const double side = 0.7071067811865476;
+    const double eighths[8][2] = {
+        { 1.0, 0.0 }, { side, side }, { 0.0, 1.0 }, { -side, side }, { -1.0, 0.0 }, { -side, -side }, { 0.0, -1.0 }, { side, -side }
+    };
+    ik_roots roots = { { { 0.0, 0.0 } }, 0, 0 };
+    ik_waves waves = { { { 0.0 } }, 4, 0.0, 0.0 };
+    ik_root found[IK_SIZE];
+    int done[IK_SIZE] = { 0 }, count, i, j;
+    double size = 0.0, bends[3], turn[2], most, value;
+    for (i = 0; i < 9; i++) {
+        if (!ik_finite(a[i])) return roots;
+        if (ik_abs(a[i]) > size) size = ik_abs(a[i]);
+    }
+    if (size < IK_VANISHING) {
+        roots.is_free = 1;
+        return roots;
+    }
+    waves.d[0][0] = a[0] / size;
+    for (i = 1; i < 5; i++) {
+        waves.d[i][0] = 0.5 * (a[2 * i - 1] / size);
+        waves.d[i][1] = -0.5 * (a[2 * i] / size);
+    }
+    for (i = 0; i < 8; i++) {
+        ik_bends(&waves, eighths[i], bends);
+        if (ik_abs(bends[0]) > waves.largest) {
+            waves.largest = ik_abs(bends[0]);
+            waves.start = (i - 4.0) * 0.7853981633974483;
+        }
+    }
+    count = ik_roots_of_waves(&waves, 0, found);
+    most = 5.0 * ik_sqrt(slack);
+    if (most < 1e-2) most = 1e-2;
+    for (i = 0; i < count; i++) {
+        /* Of conjugate roots one is enough. */
+        if (done[i] || found[i].imaginary < 0.0 || found[i].imaginary > most) continue;
+        if (found[i].imaginary > 0.0) {
+            value = ik_improved(&waves, found[i].angle, 1, turn);
+            if (ik_abs(value) < 2e-14 || slack > 0.0) ik_push(&roots, turn[0], turn[1]);
+            continue;
+        }
+        for (j = i + 1; j < count; j++) {
+            /* Sine of half of the gap, of whichever half is within a quarter turn. */
+            double half[2], gap;
+            ik_cos_sin(0.5 * (found[j].angle - found[i].angle), half);
+            gap = half[0] < 0.0 ? -half[1] : half[1];
+            if (!done[j] && !(ik_abs(found[j].imaginary) > 0.0) && ik_abs(gap) < 5e-3) {
+                value = ik_improved(&waves, found[i].angle + gap, 1, turn);
+                if (ik_abs(value) < 2e-14) {
+                    done[j] = 1;
+                    break;
+                }
+            }
+        }
+        if (j == count) ik_improved(&waves, found[i].angle, 0, turn);
+        ik_push(&roots, turn[0], turn[1]);
+    }
+    return roots;
+}
+
+/* == vector == */
+typedef struct { double x[3]; } ik_vector;
+
+/* Cosine and sine. */
+typedef struct { double c, s; } ik_turn;
+
+/* A line about which things turn: unit direction, and a point on it. */
+typedef struct { ik_vector direction, point; } ik_line;
+
+/* A rigid motion: rows of its rotation, and where it takes the origin. */
+typedef struct { ik_vector rows[3], place; } ik_motion;
+
+static ik_vector ik_vector_of(double x, double y, double z)
+{
+    ik_vector v;
+    v.x[0] = x;
+    v.x[1] = y;
+    v.x[2] = z;
+    return v;
+}
+
+static ik_turn ik_turn_of(double c, double s)
+{
+    ik_turn turn;
+    turn.c = c;
+    turn.s = s;
+    return turn;
+}
+
+static double ik_dot(ik_vector a, ik_vector b) { return a.x[0] * b.x[0] + a.x[1] * b.x[1] + a.x[2] * b.x[2]; }
+
+static ik_vector ik_cross(ik_vector a, ik_vector b)
+{
+    return ik_vector_of(a.x[1] * b.x[2] - a.x[2] * b.x[1], a.x[2] * b.x[0] - a.x[0] * b.x[2], a.x[0] * b.x[1] - a.x[1] * b.x[0]);
+}
+
+static ik_vector ik_plus(ik_vector a, ik_vector b) { return ik_vector_of(a.x[0] + b.x[0], a.x[1] + b.x[1], a.x[2] + b.x[2]); }
+
+static ik_vector ik_minus(ik_vector a, ik_vector b) { return ik_vector_of(a.x[0] - b.x[0], a.x[1] - b.x[1], a.x[2] - b.x[2]); }
+
+static ik_vector ik_scaled(ik_vector a, double x) { return ik_vector_of(a.x[0] * x, a.x[1] * x, a.x[2] * x); }
+
+/* (x, y) at length one; says whether it has a direction. */
+static int ik_unit(double x, double y, ik_turn *out)
+{
+    double n = ik_sqrt(x * x + y * y);
+    if (!(n > 0.0) || !ik_finite(n)) return 0;
+    *out = ik_turn_of(x / n, y / n);
+    return 1;
+}
+
+/* Both turns, one after the other. */
+static ik_turn ik_sum(ik_turn a, ik_turn b) { return ik_turn_of(a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s); }
+
+static ik_turn ik_back(ik_turn turn) { return ik_turn_of(turn.c, -turn.s); }
+
+static ik_turn ik_turn_by(double angle)
+{
+    double turn[2];
+    ik_cos_sin(angle, turn);
+    return ik_turn_of(turn[0], turn[1]);
+}
+
+/* A vector turned about a line. */
+static ik_vector ik_turned(const ik_line *line, ik_vector v, ik_turn turn)
+{
+    ik_vector along = ik_scaled(line->direction, ik_dot(line->direction, v)), across = ik_cross(line->direction, v);
+    return ik_plus(along, ik_plus(ik_scaled(ik_minus(v, along), turn.c), ik_scaled(across, turn.s)));
+}
+
+/* A line turned about another. */
+static ik_line ik_line_turned(const ik_line *line, const ik_line *other, ik_turn turn)
+{
+    ik_line out;
+    out.direction = ik_turned(line, other->direction, turn);
+    out.point = ik_plus(line->point, ik_turned(line, ik_minus(other->point, line->point), turn));
+    return out;
+}
+
+/* A vector, and a line, after a motion. */
+static ik_vector ik_vector_moved(const ik_motion *motion, ik_vector v)
+{
+    return ik_vector_of(ik_dot(motion->rows[0], v), ik_dot(motion->rows[1], v), ik_dot(motion->rows[2], v));
+}
+
+static ik_line ik_line_moved(const ik_motion *motion, const ik_line *line)
+{
+    ik_line out;
+    out.direction = ik_vector_moved(motion, line->direction);
+    out.point = ik_plus(ik_vector_moved(motion, line->point), motion->place);
+    return out;
+}
+
+static ik_motion ik_inverse(const ik_motion *motion)
+{
+    ik_motion out;
+    int i;
+    for (i = 0; i < 3; i++) out.rows[i] = ik_vector_of(motion->rows[0].x[i], motion->rows[1].x[i], motion->rows[2].x[i]);
+    out.place = ik_scaled(ik_vector_moved(&out, motion->place), -1.0);
+    return out;
+}
+
+/* == elimination == */
+/* Six equations, each with a coefficient for each product of one of 1, c, s of the sampled angle q3, one of t^2, t, 1 of the half
+   tangent t of a second one, and one of 1, c, s of the third. */
+typedef struct { double rows[6][27]; } ik_six_rows;
+
+/* The angle that is eliminated by its half tangent is counted from here: far from the multiples of 90 degrees. */
+static ik_turn ik_start(void) { return ik_turn_of(0.8, 0.6); }
+
+/* The turn that belongs to a half tangent, given as a vector along half of the turn. */
+static ik_turn ik_turn_of_half(ik_turn half) { return ik_sum(ik_sum(half, half), ik_start()); }
+
+/* From values at the turns (1, 0), (0, 1), (-1, 0) to the coefficients of 1, c, s, for the index of this stride. */
+static void ik_fit(double *values, int count, int stride)
+{
+    int outer, base;
+    for (outer = 0; outer < count; outer += 3 * stride)
+        for (base = outer; base < outer + stride; base++) {
+            double a = values[base], b = values[base + stride], still = 0.5 * (a + values[base + 2 * stride]);
+            values[base] = still;
+            values[base + stride] = a - still;
+            values[base + 2 * stride] = b - still;
+        }
+}
+
+/* The fourteen functions of a line on which the elimination rests: with p a point on it and l its direction, p, l, p.p, p.l, p x l
+   and (p.p) l - 2 (p.l) p. */
+static void ik_functions(const ik_line *line, ik_vector origin, double scale, double out[14])
+{
+    ik_vector p = ik_scaled(ik_minus(line->point, origin), scale), l = line->direction, m = ik_cross(p, l), w;
+    double pp = ik_dot(p, p), pl = ik_dot(p, l);
+    int i;
+    w = ik_minus(ik_scaled(l, pp), ik_scaled(p, 2.0 * pl));
+    for (i = 0; i < 3; i++) {
+        out[i] = p.x[i];
+        out[3 + i] = l.x[i];
+        out[8 + i] = m.x[i];
+        out[11 + i] = w.x[i];
+    }
+    out[6] = pp;
+    out[7] = pl;
+}
+
+/* Takes all columns of `right` but the first to its first eight rows, by reflections of both sides. */
+static void ik_clear_right(double left[14][27], double right[14][9])
+{
+    int done[9] = { 1 }, step, pivot, r, c;
+    for (step = 0; step < 8; step++) {
+        double squares[9] = { 0.0 }, mirror[14] = { 0.0 }, of_left[27] = { 0.0 }, of_right[9] = { 0.0 }, most = -1.0, head, factor, by;
+        for (r = step; r < 14; r++)
+            for (c = 0; c < 9; c++) squares[c] += right[r][c] * right[r][c];
+        for (pivot = 0, c = 1; c < 9; c++)
+            if (!done[c] && squares[c] > most) {
+                pivot = c;
+                most = squares[c];
+            }
+        done[pivot] = 1;
+        if (most < 1e-24) return;
+        for (r = step; r < 14; r++) mirror[r] = right[r][pivot];
+        head = mirror[step];
+        mirror[step] += head < 0.0 ? -ik_sqrt(most) : ik_sqrt(most);
+        factor = 1.0 / (most + ik_abs(head) * ik_sqrt(most));
+        for (r = step; r < 14; r++) {
+            for (c = 0; c < 27; c++) of_left[c] += mirror[r] * left[r][c];
+            for (c = 0; c < 9; c++) of_right[c] += mirror[r] * right[r][c];
+        }
+        for (r = step; r < 14; r++) {
+            by = factor * mirror[r];
+            for (c = 0; c < 27; c++) left[r][c] -= by * of_left[c];
+            for (c = 0; c < 9; c++) right[r][c] -= by * of_right[c];
+        }
+    }
+}
+
+/* The equations without q1 and q2, for the loop e1 ... e6 = goal, by Raghavan and Roth's elimination. The half tangent is that of q4, or
+   of q5 if `swapped`. */
+static void ik_eliminate(const ik_line lines[6], const ik_motion *goal, int swapped, ik_six_rows *out)
+{
+    double left[14][27], right[14][9], values[14], size = 0.0, scale;
+    ik_turn plain[3], shifted[3];
+    ik_vector origin = lines[2].point;
+    ik_line last = ik_line_moved(goal, &lines[5]);
+    int i, j, k, row;
+    plain[0] = ik_turn_of(1.0, 0.0);
+    plain[1] = ik_turn_of(0.0, 1.0);
+    plain[2] = ik_turn_of(-1.0, 0.0);
+    for (i = 0; i < 3; i++) shifted[i] = ik_sum(plain[i], ik_start());
+    for (i = 0; i < 6; i++) {
+        ik_vector d = ik_minus(lines[i].point, origin);
+        if (ik_dot(d, d) > size) size = ik_dot(d, d);
+    }
+    scale = 1.0 / ik_sqrt(size);
+    for (k = 0; k < 3; k++) {
+        ik_line after5 = ik_line_turned(&lines[4], &lines[5], swapped ? shifted[k] : plain[k]);
+        for (j = 0; j < 3; j++) {
+            ik_line after4 = ik_line_turned(&lines[3], &after5, swapped ? plain[j] : shifted[j]);
+            for (i = 0; i < 3; i++) {
+                ik_line after3 = ik_line_turned(&lines[2], &after4, plain[i]);
+                ik_functions(&after3, origin, scale, values);
+                for (row = 0; row < 14; row++) left[row][swapped ? 9 * i + 3 * k + j : 9 * i + 3 * j + k] = values[row];
+            }
+        }
+    }
+    for (i = 0; i < 3; i++) {
+        ik_line before1 = ik_line_turned(&lines[0], &last, ik_back(plain[i]));
+        for (j = 0; j < 3; j++) {
+            ik_line before2 = ik_line_turned(&lines[1], &before1, ik_back(plain[j]));
+            ik_functions(&before2, origin, scale, values);
+            for (row = 0; row < 14; row++) right[row][3 * i + j] = values[row];
+        }
+    }
+    for (row = 0; row < 14; row++) {
+        ik_fit(right[row], 9, 1);
+        ik_fit(right[row], 9, 3);
+        ik_fit(left[row], 27, 1);
+        ik_fit(left[row], 27, 3);
+        ik_fit(left[row], 27, 9);
+        left[row][0] -= right[row][0];
+    }
+    ik_clear_right(left, right);
+    for (row = 0; row < 6; row++)
+        for (i = 0; i < 3; i++)
+            for (k = 0; k < 3; k++) {
+                /* (1 + t^2) (one + cos c + sin s) */
+                const double *from = &left[8 + row][9 * i + k];
+                double *to = &out->rows[row][9 * i + k];
+                to[0] = from[0] - from[3];
+                to[3] = 2.0 * from[6];
+                to[6] = from[0] + from[3];
+            }
+}
+
+/* The six equations at one value of q3: three forms in 1, c, s of the third angle, with t^2, t and 1. */
+static void ik_rows_at(const ik_six_rows *six, ik_turn turn, double rows[54])
+{
+    int r, n;
+    for (r = 0; r < 6; r++)
+        for (n = 0; n < 9; n++) rows[9 * r + n] = six->rows[r][n] + turn.c * six->rows[r][9 + n] + turn.s * six->rows[r][18 + n];
+}
+
+/* Clears the first columns of six rows of this width below the diagonal, with row exchanges; returns the product of the pivots, and
+   multiplies `sign` by that of the exchanges. */
+static double ik_clear(double *rows, int width, int columns, double *sign)
+{
+    double product = 1.0, swap, inverse, factor;
+    int k, r, c, pivot;
+    for (k = 0; k < columns; k++) {
+        const double *top = &rows[width * k];
+        pivot = k;
+        for (r = k + 1; r < 6; r++)
+            if (ik_abs(rows[width * r + k]) > ik_abs(rows[width * pivot + k])) pivot = r;
+        if (pivot != k) {
+            for (c = 0; c < width; c++) {
+                swap = rows[width * pivot + c];
+                rows[width * pivot + c] = rows[width * k + c];
+                rows[width * k + c] = swap;
+            }
+            *sign = -*sign;
+        }
+        product *= top[k];
+        if (!(top[k] < 0.0) && !(top[k] > 0.0)) continue;
+        inverse = 1.0 / top[k];
+        for (r = k + 1; r < 6; r++) {
+            double *row = &rows[width * r];
+            factor = row[k] * inverse;
+            row[k] = 0.0;
+            for (c = k + 1; c < width; c++) row[c] -= factor * top[c];
+        }
+    }
+    return product;
+}
+
+/* The square system of the six equations and their multiples by t at one value of q3, reduced to the unknowns (t y, y) with y for
+   1, c, s of the third angle: its determinant is what is returned times that of `left`. In blocks of three columns the twelve are,
+   after the first three columns of the six have been cleared below U,
+
+       U T T 0
+       0 L L 0
+       0 U T T      the three rows L L 0 and U T T clear the second block of columns,
+       0 0 L L      and leave three that join the last */
+static double ik_reduced(const ik_six_rows *six, ik_turn turn, double left[36])
+{
+    double rows[54], next[54] = { 0.0 }, sign = 1.0, ignored = 1.0, first, second;
+    int r, c;
+    ik_rows_at(six, turn, rows);
+    /* The same steps act on the equations and on their multiples, so that the sign of exchanges cancels. */
+    first = ik_clear(rows, 9, 3, &ignored);
+    for (r = 0; r < 3; r++) {
+        for (c = 0; c < 6; c++) next[9 * r + c] = rows[9 * (3 + r) + 3 + c];
+        for (c = 0; c < 9; c++) next[9 * (3 + r) + c] = rows[9 * r + c];
+    }
+    second = ik_clear(next, 9, 3, &sign);
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 6; c++) {
+            left[6 * r + c] = next[9 * (3 + r) + 3 + c];
+            left[6 * (3 + r) + c] = rows[9 * (3 + r) + 3 + c];
+        }
+    return sign * first * second;
+}
+
+/* How the sampled angle is looked at: tan((q3 - centre) / 2) = width tan(u / 2). A determinant is a trigonometric polynomial of u as
+   well; where it is all but zero over a part of the circle, a small width shows what is there. */
+typedef struct {
+    ik_turn centre;
+    double width;
+} ik_view;
+
+/* The angle at u, and the square of the stretch there. */
+static ik_turn ik_turn_in_view(const ik_view *view, double u, double *square)
+{
+    ik_turn half = ik_turn_by(0.5 * u);
+    double c = half.c, s = view->width * half.s;
+    *square = c * c + s * s;
+    return ik_sum(view->centre, ik_turn_of((c * c - s * s) / *square, 2.0 * c * s / *square));
+}
+
+/* The determinant at u, as a trigonometric polynomial of this degree. */
+static double ik_value_in_view(const ik_view *view, const ik_six_rows *six, int degree, double u)
+{
+    double square, rows[36], sign = 1.0, factor, pivots, value;
+    ik_turn turn = ik_turn_in_view(view, u, &square);
+    int i;
+    factor = ik_reduced(six, turn, rows);
+    pivots = ik_clear(rows, 6, 6, &sign);
+    value = sign * factor * pivots;
+    for (i = 0; i < degree; i++) value *= square;
+    return value;
+}
+
+/* The waves of the determinant, from samples at equal steps. */
+static ik_waves ik_waves_in_view(const ik_view *view, const ik_six_rows *six, int degree)
+{
+    ik_waves waves = { { { 0.0 } }, 0, 0.0, 0.0 };
+    double samples[IK_SAMPLES], table[IK_SAMPLES][2], step;
+    int n = 2 * degree + 1, at = 0, i, k, place;
+    step = 6.283185307179586 / (double)n;
+    for (i = 0; i < n; i++) samples[i] = ik_value_in_view(view, six, degree, 6.283185307179586 * (double)i / (double)n);
+    for (i = 0; i < n; i++) {
+        ik_cos_sin(step * (double)i, table[i]);
+        if (ik_abs(samples[i]) > ik_abs(samples[at])) at = i;
+    }
+    for (k = 0; k <= degree; k++) {
+        for (place = 0, i = 0; i < n; i++) {
+            waves.d[k][0] += samples[i] * table[place][0];
+            waves.d[k][1] -= samples[i] * table[place][1];
+            place = (place + k) % n;
+        }
+        waves.d[k][0] /= (double)n;
+        waves.d[k][1] /= (double)n;
+    }
+    waves.degree = degree;
+    waves.largest = ik_abs(samples[at]);
+    waves.start = step * (double)at - 3.141592653589793;
+    return waves;
+}
+
+/* Value and derivative. */
+static double ik_waves_at(const ik_waves *waves, double angle, double *slope)
+{
+    ik_turn turn = ik_turn_by(angle);
+    double x = 1.0, y = 0.0, value = waves->d[0][0], next;
+    int k;
+    *slope = 0.0;
+    for (k = 1; k <= waves->degree; k++) {
+        next = x * turn.c - y * turn.s;
+        y = x * turn.s + y * turn.c;
+        x = next;
+        value += 2.0 * (waves->d[k][0] * x - waves->d[k][1] * y);
+        *slope -= 2.0 * (double)k * (waves->d[k][0] * y + waves->d[k][1] * x);
+    }
+    return value;
+}
+
+/* == null == */
+/* A root of the determinant near that of its waves, which are exact to rounding of the largest sample: Newton's method with the
+   determinant itself and the slope of the waves, only where rounding matters. */
+static double ik_refined(const ik_six_rows *six, const ik_waves *waves, const ik_view *view, double start)
+{
+    double q = start, slope, doubt, change;
+    int i;
+    for (i = 0; i < 8; i++) {
+        ik_waves_at(waves, q, &slope);
+        doubt = 1e-15 * waves->largest / ik_abs(slope);
+        if (i == 0 && doubt < 1e-13) break;
+        change = -ik_value_in_view(view, six, waves->degree, q) / slope;
+        if (!(ik_abs(change) < 0.05)) break;
+        q += change;
+        /* What is left is about this part of the change. */
+        if (ik_abs(change) * (doubt + ik_abs(change)) < 1e-13) break;
+    }
+    return q;
+}
+
+/* The null space of the reduced system: vectors (t y, y); returns how many there are, three at most. */
+static int ik_null_space(const ik_six_rows *six, ik_turn turn, int most, double vectors[3][6])
+{
+    double m[36], largest = 0.0, pivot, factor, x[6], sum, swap;
+    int columns[6] = { 0, 1, 2, 3, 4, 5 }, rank = 0, row, column, count, r, c, i;
+    ik_reduced(six, turn, m);
+    for (; rank < 6; rank++) {
+        row = column = rank;
+        for (r = rank; r < 6; r++)
+            for (c = rank; c < 6; c++)
+                if (ik_abs(m[6 * r + c]) > ik_abs(m[6 * row + column])) {
+                    row = r;
+                    column = c;
+                }
+        pivot = ik_abs(m[6 * row + column]);
+        if (pivot > largest) largest = pivot;
+        /* The system is singular, whatever rounding says. */
+        if (rank == 5 || (rank + most >= 6 && pivot <= 1e-6 * largest) || !(pivot > 0.0)) break;
+        for (c = 0; c < 6; c++) {
+            swap = m[6 * rank + c];
+            m[6 * rank + c] = m[6 * row + c];
+            m[6 * row + c] = swap;
+        }
+        i = columns[rank];
+        columns[rank] = columns[column];
+        columns[column] = i;
+        for (r = 0; r < 6; r++) {
+            swap = m[6 * r + rank];
+            m[6 * r + rank] = m[6 * r + column];
+            m[6 * r + column] = swap;
+        }
+        for (r = rank + 1; r < 6; r++) {
+            factor = m[6 * r + rank] / m[6 * rank + rank];
+            for (c = rank + 1; c < 6; c++) m[6 * r + c] -= factor * m[6 * rank + c];
+        }
+    }
+    count = 6 - rank < 3 ? 6 - rank : 3;
+    for (i = 0; i < count; i++) {
+        for (r = 0; r < 6; r++) x[r] = r == rank + i ? 1.0 : 0.0;
+        for (r = rank - 1; r >= 0; r--) {
+            sum = 0.0;
+            for (c = r + 1; c < 6; c++) sum += m[6 * r + c] * x[c];
+            x[r] = -sum / m[6 * r + r];
+        }
+        for (r = 0; r < 6; r++) vectors[i][columns[r]] = x[r];
+    }
+    return count;
+}
+
+/* Half of a null vector. */
+static ik_vector ik_half_of(const double *v) { return ik_vector_of(v[0], v[1], v[2]); }
+
+/* The turn along the last two of y, whichever sign it has. */
+static int ik_unit_of(ik_vector y, ik_turn *out)
+{
+    double sign = y.x[0] < 0.0 ? -1.0 : 1.0;
+    return ik_unit(sign * y.x[1], sign * y.x[2], out);
+}
+
+/* At a simple root, the turn whose half tangent was eliminated, and the one beside it; says whether there is such a pair. */
+static int ik_single(const ik_six_rows *six, ik_turn turn, ik_turn pair[2])
+{
+    double vectors[3][6], h, l, hl;
+    ik_vector high, low;
+    ik_turn half;
+    ik_null_space(six, turn, 1, vectors);
+    high = ik_half_of(vectors[0]);
+    low = ik_half_of(&vectors[0][3]);
+    h = ik_dot(high, high);
+    l = ik_dot(low, low);
+    hl = ik_dot(high, low);
+    if (!(h > l ? ik_unit(hl, h, &half) : ik_unit(l, hl, &half))) return 0;
+    pair[0] = ik_turn_of_half(half);
+    return ik_unit_of(h > l ? high : low, &pair[1]);
+}
+
+/* The turns at which all forms in 1, c, s vanish; returns how many: one, or two where the forms are multiples of one. */
+static int ik_third(const ik_vector forms[6], ik_turn found[2])
+{
+    ik_vector first = forms[0], y = ik_vector_of(0.0, 0.0, 0.0), across;
+    ik_roots roots;
+    int i;
+    for (i = 0; i < 6; i++)
+        if (ik_dot(forms[i], forms[i]) > ik_dot(first, first)) first = forms[i];
+    for (i = 0; i < 6; i++) {
+        across = ik_cross(first, forms[i]);
+        if (ik_dot(across, across) > ik_dot(y, y)) y = across;
+    }
+    if (ik_dot(y, y) > 1e-10 * ik_dot(first, first) * ik_dot(first, first)) return ik_unit_of(y, found);
+    roots = ik_circle(first.x[1], first.x[2], -first.x[0], 1e-9);
+    for (i = 0; i < ik_count(&roots) && i < 2; i++) {
+        double root[2];
+        ik_get(&roots, i, root);
+        found[i] = ik_turn_of(root[0], root[1]);
+    }
+    return i;
+}
+
+/* The pairs at a root where several solutions share the angle: as many null vectors as there are solutions, mixed. Multiplication by t
+   maps their space to itself, and its eigenvalues are the values of t. Returns the dimension of the null space; a space of one
+   dimension gives no pairs. */
+static int ik_several(const ik_six_rows *six, ik_turn turn, ik_turn pairs[6][2], int *count)
+{
+    double vectors[3][6], left[3][3], right[3][3], map[IK_SIZE][IK_SIZE] = { { 0.0 } }, values[IK_SIZE][2], rows[54];
+    double factor, swap;
+    int n = ik_null_space(six, turn, 3, vectors), found, i, j, k, r, c;
+    *count = 0;
+    if (n < 2) return n;
+    /* high = low T, by normal equations, solved by elimination. */
+    for (i = 0; i < n; i++)
+        for (j = 0; j < n; j++) {
+            left[i][j] = ik_dot(ik_half_of(&vectors[i][3]), ik_half_of(&vectors[j][3]));
+            right[i][j] = ik_dot(ik_half_of(&vectors[i][3]), ik_half_of(vectors[j]));
+        }
+    for (k = 0; k < n; k++)
+        for (r = 0; r < n; r++) {
+            if (r == k) continue;
+            factor = left[r][k] / left[k][k];
+            for (c = 0; c < n; c++) {
+                left[r][c] -= factor * left[k][c];
+                right[r][c] -= factor * right[k][c];
+            }
+        }
+    for (i = 0; i < n; i++)
+        for (j = 0; j < n; j++) map[i][j] = right[i][j] / left[i][i];
+    if (n == 3) {
+        /* A similar matrix whose lower left corner is zero. */
+        if (ik_abs(map[2][0]) > ik_abs(map[1][0])) {
+            for (c = 0; c < 3; c++) {
+                swap = map[1][c];
+                map[1][c] = map[2][c];
+                map[2][c] = swap;
+            }
+            for (r = 0; r < 3; r++) {
+                swap = map[r][1];
+                map[r][1] = map[r][2];
+                map[r][2] = swap;
+            }
+        }
+        if (ik_abs(map[1][0]) > 0.0) {
+            factor = map[2][0] / map[1][0];
+            for (c = 0; c < 3; c++) map[2][c] -= factor * map[1][c];
+            for (r = 0; r < 3; r++) map[r][1] += factor * map[r][2];
+        }
+    }
+    found = ik_eigenvalues(map, n, values);
+    ik_rows_at(six, turn, rows);
+    for (i = 0; i < found; i++) {
+        double t = values[i][0];
+        ik_vector forms[6];
+        ik_turn half, others[2];
+        if (ik_abs(values[i][1]) > 1e-3 * (1.0 + t * t) || !ik_unit(1.0, t, &half)) continue;
+        for (r = 0; r < 6; r++)
+            for (k = 0; k < 3; k++) {
+                const double *x = &rows[9 * r + k];
+                forms[r].x[k] = x[0] * half.s * half.s + x[3] * half.s * half.c + x[6] * half.c * half.c;
+            }
+        j = ik_third(forms, others);
+        for (k = 0; k < j; k++) {
+            pairs[*count][0] = ik_turn_of_half(half);
+            pairs[*count][1] = others[k];
+            *count += 1;
+        }
+    }
+    return n;
+}
+
+/* == six == */
+/* Six revolute joints in general. The loop is e1 e2 e3 e4 e5 e6 = G, each e a turn about a line. Fourteen equations, each linear in the
+   cosine and sine of every angle (Raghavan and Roth, 1993), leave six in q3, q4 and q5; they and their multiples by the half tangent of
+   q4 are a square system, whose determinant is a trigonometric polynomial of q3. Its roots are eigenvalues, its null vectors q4 and
+   q5, what remains of the loop q2, q1 and q6. Any joint can be first in the loop, and the loop can be run backwards: an order. */
+#define IK_CANDIDATES 48
+
+typedef struct {
+    ik_turn turns[IK_CANDIDATES][6];
+    int count;
+} ik_candidates;
+
+/* A loop turned and shifted to an order; `joints` says which joint is at each place. */
+typedef struct {
+    ik_line lines[6];
+    ik_motion goal;
+    int joints[6];
+    int swapped;
+} ik_loop;
+
+static ik_loop ik_arrange(const ik_line lines[6], const ik_motion *goal, int code)
+{
+    ik_loop loop;
+    ik_motion undo;
+    int backwards = code >= 12, shift = code % 12 / 2, i, place;
+    loop.swapped = code % 2;
+    loop.goal = backwards ? ik_inverse(goal) : *goal;
+    undo = ik_inverse(&loop.goal);
+    for (i = 0; i < 6; i++) {
+        place = (i + shift) % 6;
+        loop.joints[i] = backwards ? 5 - place : place;
+        loop.lines[i] = lines[loop.joints[i]];
+        if (backwards) loop.lines[i].direction = ik_scaled(loop.lines[i].direction, -1.0);
+        /* e1 X = G is X (G^-1 e1 G) = G. */
+        if (i + shift >= 6) loop.lines[i] = ik_line_moved(&undo, &loop.lines[i]);
+    }
+    return loop;
+}
+
+/* The turn about an axis that takes two vectors to two others as well as it can. */
+static int ik_turn_between(ik_vector axis, const ik_vector from[2], const ik_vector to[2], ik_turn *out)
+{
+    double x = 0.0, y = 0.0;
+    int i;
+    for (i = 0; i < 2; i++) {
+        ik_vector across = ik_minus(from[i], ik_scaled(axis, ik_dot(axis, from[i])));
+        x += ik_dot(across, to[i]);
+        y += ik_dot(axis, ik_cross(across, to[i]));
+    }
+    return ik_unit(x, y, out);
+}
+
+/* Adds u . R2 v = right as an equation in the cosine and sine of q2. */
+static void ik_add_turned(ik_vector axis, ik_vector u, ik_vector v, double right, double equation[3])
+{
+    ik_vector along = ik_scaled(axis, ik_dot(axis, v));
+    equation[0] = ik_dot(u, ik_minus(v, along)) + equation[0];
+    equation[1] = ik_dot(u, ik_cross(axis, v)) + equation[1];
+    equation[2] = (right - ik_dot(u, along)) + equation[2];
+}
+
+/* The first two turns and the last, from the middle three; says whether there are such. */
+static int ik_close(const ik_loop *loop, const ik_turn middle[3], ik_turn turns[6])
+{
+    const ik_line *lines = loop->lines;
+    ik_line reached = ik_line_turned(&lines[4], &lines[5], middle[2]), goal = ik_line_moved(&loop->goal, &lines[5]);
+    ik_vector h1 = lines[0].direction, h2 = lines[1].direction, h6 = lines[5].direction;
+    ik_vector p, l = ik_vector_of(0.0, 0.0, 0.0), g, m, step, moved[2], wanted[2], side, seen;
+    double equations[5][3] = { { 0.0 } }, cc = 0.0, cs = 0.0, ss = 0.0, cr = 0.0, sr = 0.0;
+    int i;
+    reached = ik_line_turned(&lines[3], &reached, middle[1]);
+    reached = ik_line_turned(&lines[2], &reached, middle[0]);
+    /* e1 e2 takes the line (p, l) to (g, m); what e1 leaves alone is linear in the cosine and sine of q2. */
+    p = ik_minus(reached.point, lines[1].point);
+    l = reached.direction;
+    g = ik_minus(goal.point, lines[0].point);
+    m = goal.direction;
+    step = ik_minus(lines[1].point, lines[0].point);
+    ik_add_turned(h2, h1, l, ik_dot(h1, m), equations[0]);
+    ik_add_turned(h2, h1, p, ik_dot(h1, g) - ik_dot(h1, step), equations[1]);
+    ik_add_turned(h2, step, p, 0.5 * (ik_dot(g, g) - ik_dot(p, p) - ik_dot(step, step)), equations[2]);
+    ik_add_turned(h2, step, l, ik_dot(g, m) - ik_dot(p, l), equations[3]);
+    ik_add_turned(h2, h1, ik_cross(p, l), ik_dot(h1, ik_cross(g, m)), equations[4]);
+    ik_add_turned(h2, ik_cross(h1, step), l, 0.0, equations[4]);
+    for (i = 0; i < 5; i++) {
+        double c = equations[i][0], s = equations[i][1], r = equations[i][2];
+        cc += c * c;
+        cs += c * s;
+        ss += s * s;
+        cr += c * r;
+        sr += s * r;
+    }
+    if (!ik_unit(cr * ss - sr * cs, sr * cc - cr * cs, &turns[1])) return 0;
+    moved[0] = ik_plus(ik_turned(&lines[1], p, turns[1]), step);
+    moved[1] = ik_turned(&lines[1], l, turns[1]);
+    wanted[0] = g;
+    wanted[1] = m;
+    if (!ik_turn_between(h1, moved, wanted, &turns[0])) return 0;
+    for (i = 0; i < 3; i++) turns[2 + i] = middle[i];
+    /* A vector that is not along the last axis shows how far that has turned. */
+    side = ik_abs(h6.x[0]) < 0.8 ? ik_vector_of(1.0, 0.0, 0.0) : ik_vector_of(0.0, 1.0, 0.0);
+    seen = ik_vector_moved(&loop->goal, side);
+    for (i = 0; i < 5; i++) seen = ik_turned(&lines[i], seen, ik_back(turns[i]));
+    moved[0] = side;
+    wanted[0] = seen;
+    moved[1] = wanted[1] = ik_vector_of(0.0, 0.0, 0.0);
+    return ik_turn_between(h6, moved, wanted, &turns[5]);
+}
+
+/* A motion near another, in no special direction. */
+static ik_motion ik_nudged(const ik_motion *goal, double size)
+{
+    ik_turn turn = ik_turn_by(size);
+    ik_line about;
+    ik_motion out;
+    int i, k;
+    about.direction = ik_vector_of(0.48, -0.6, 0.64);
+    about.point = ik_vector_of(0.0, 0.0, 0.0);
+    for (i = 0; i < 3; i++) {
+        ik_vector column = ik_turned(&about, ik_vector_of(goal->rows[0].x[i], goal->rows[1].x[i], goal->rows[2].x[i]), turn);
+        for (k = 0; k < 3; k++) out.rows[k].x[i] = column.x[k];
+    }
+    out.place = ik_plus(goal->place, ik_scaled(ik_vector_of(0.64, 0.48, -0.6), size));
+    return out;
+}
+
+/* Adds a candidate: the sampled turn, then the one that was eliminated by its half tangent and the one beside it. */
+static void ik_add_candidate(const ik_loop *loop, ik_turn turn, const ik_turn pair[2], ik_candidates *found)
+{
+    ik_turn middle[3], turns[6];
+    int i;
+    middle[0] = turn;
+    middle[1] = pair[loop->swapped ? 1 : 0];
+    middle[2] = pair[loop->swapped ? 0 : 1];
+    if (found->count >= IK_CANDIDATES || !ik_close(loop, middle, turns)) return;
+    for (i = 0; i < 6; i++) found->turns[found->count][loop->joints[i]] = turns[i];
+    found->count++;
+}
+
+/* Roots whose imaginary part is smaller may be real: pairs that fall together lose half of their digits. */
+#define IK_NEARLY_REAL 1e-3
+
+/* Where the polynomial is smaller than this part of the largest sample, rounding decides where its roots are and which are real. */
+#define IK_FLAT 1e-12
+
+/* How high the polynomial is about a root. */
+static double ik_height(const ik_waves *waves, double angle)
+{
+    double slope, value = ik_waves_at(waves, angle, &slope);
+    return ik_abs(value) + IK_NEARLY_REAL * ik_abs(slope);
+}
+
+/* Adds the candidates that show in one view; says whether their roots lie apart. `flat` says whether the polynomial is all but zero
+   somewhere; the view then becomes one of that place. */
+static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int squared, ik_view *view, double slack, ik_candidates *found,
+                   int *flat)
+{
+    ik_waves waves = ik_waves_in_view(view, six, degree);
+    ik_root roots[IK_SIZE];
+    int count = ik_roots_of_waves(&waves, squared, roots), multiplicity = squared ? 2 : 1, apart = count * multiplicity == 2 * degree;
+    int done[IK_SIZE] = { 0 }, near[IK_SIZE], together, pairs_found, i, j, k;
+    double least = IK_FLAT * waves.largest, flattest = 0.0, width = 1e-3, height, gap, square, shift;
+    ik_turn turn, pairs[6][2];
+    *flat = 0;
+    for (i = 0; i < count; i++) {
+        double angle = roots[i].angle, imaginary = roots[i].imaginary;
+        if (ik_abs(imaginary) < 1.0 && !(squared && ik_abs(imaginary) < IK_NEARLY_REAL)) {
+            height = ik_height(&waves, angle);
+            if (height < least) {
+                *flat = 1;
+                flattest = angle;
+                least = height;
+            }
+        }
+        if (done[i] || ik_abs(imaginary) > IK_NEARLY_REAL + 5.0 * ik_sqrt(slack)) continue;
+        /* Roots that nearly fall together: their mean is more exact than each of them. */
+        together = 0;
+        shift = 0.0;
+        for (j = 0; j < count; j++) {
+            turn = ik_turn_by(roots[j].angle - angle);
+            near[j] = turn.c > 0.0 && ik_abs(turn.s) + ik_abs(roots[j].imaginary - imaginary) < 3e-3;
+            if (near[j]) {
+                together += multiplicity;
+                shift += turn.s;
+            }
+        }
+        if (together > 1) {
+            turn = ik_turn_in_view(view, angle + shift * (double)multiplicity / (double)together, &square);
+            k = ik_several(six, turn, pairs, &pairs_found);
+            for (j = 0; j < pairs_found; j++) ik_add_candidate(loop, turn, pairs[j], found);
+            if (k == together) {
+                for (j = 0; j < count; j++) done[j] |= near[j];
+                continue;
+            }
+            apart = 0;
+        }
+        turn = ik_turn_in_view(view, ik_refined(six, &waves, view, angle), &square);
+        if (ik_single(six, turn, pairs[0])) ik_add_candidate(loop, turn, pairs[0], found);
+    }
+    if (*flat) {
+        /* As wide as the roots reach that rounding has moved. */
+        for (i = 0; i < count; i++) {
+            turn = ik_turn_by(roots[i].angle - flattest);
+            gap = ik_abs(turn.s) + ik_abs(roots[i].imaginary);
+            if (turn.c > 0.0 && gap < 0.5 && gap > width && ik_height(&waves, roots[i].angle) < IK_FLAT * waves.largest) width = gap;
+        }
+        turn = ik_turn_in_view(view, flattest, &square);
+        view->centre = turn;
+        view->width = width * view->width / square;
+    }
+    return apart;
+}
+
+/* Adds the candidates of one order; says whether they are all that there are. */
+static int ik_solve_order(const ik_line lines[6], const ik_motion *goal, const double *order, double slack, ik_candidates *found)
+{
+    ik_loop loop = ik_arrange(lines, goal, (int)order[0]);
+    ik_six_rows six;
+    ik_view view;
+    int all = 1, before = found->count, round, flat;
+    ik_eliminate(loop.lines, &loop.goal, loop.swapped, &six);
+    view.centre = ik_turn_of(1.0, 0.0);
+    view.width = 1.0;
+    for (round = 0; round < 4; round++) {
+        all &= ik_look(&loop, &six, (int)order[1], order[2] > 0.0, &view, slack, found, &flat);
+        if (!flat) return all && found->count > before;
+    }
+    return 0;
+}
+
+/* Candidate turns of six joints. The numbers are six lines as direction and point, the rows of the goal's rotation, its place, and three
+   orders as code, degree (zero for none), and whether the determinant is a square. The orders are tried until in one of them all roots
+   lie apart. Slack is for poses at which that gave nothing: at a goal nearby solutions are isolated, and near enough for a polish. */
+static void ik_six(const double numbers[57], double slack, ik_candidates *found)
+{
+    ik_line lines[6];
+    ik_motion goal;
+    int i;
+    found->count = 0;
+    for (i = 0; i < 57; i++)
+        if (!ik_finite(numbers[i])) return;
+    for (i = 0; i < 6; i++) {
+        lines[i].direction = ik_half_of(&numbers[6 * i]);
+        lines[i].point = ik_half_of(&numbers[6 * i + 3]);
+    }
+    for (i = 0; i < 3; i++) goal.rows[i] = ik_half_of(&numbers[36 + 3 * i]);
+    goal.place = ik_half_of(&numbers[45]);
+    if (slack > 0.0) goal = ik_nudged(&goal, 0.1 * slack);
+    for (i = 48; i < 57; i += 3)
+        if (numbers[i + 1] > 0.0 && ik_solve_order(lines, &goal, &numbers[i], slack, found) && !(slack > 0.0)) break;
+}
