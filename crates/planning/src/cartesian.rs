@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::arm::ArmModel;
-use crate::edge::{Blocked, EdgeChecker, Obstruction, walk_edge};
+use crate::edge::{Blocked, EdgeChecker, Obstruction};
 
 /// Parameters of a straight motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -106,7 +106,7 @@ pub fn cartesian_line<C: EdgeChecker + ?Sized>(
                     ahead.push(0.5 * (done + fraction));
                     continue;
                 }
-                if let Err(Blocked { by, .. }) = walk_edge(checker, here, &q) {
+                if let Err(Blocked { by, .. }) = checker.edge(here, &q) {
                     return fail(LineObstacle::Blocked(by), &path);
                 }
                 path.push(q);

@@ -11,7 +11,7 @@ use super::problem::{Manipulation, allowed_sink, gripper_links, motion_limits};
 use crate::caging::Cage;
 use crate::edge::{EdgeChecker, Obstruction};
 use crate::mechanism::Mechanism;
-use crate::scene::{ArticleChecker, Grip, RobotChecker, Rules, Scene};
+use crate::scene::{ArticleChecker, Followed, Grip, RobotChecker, Rules, Scene};
 use crate::space::{Axis, Space};
 use crate::timing::TimedPath;
 
@@ -179,7 +179,7 @@ fn replay(
         Goal::Open { .. } => None,
     };
     let mut checker = RobotChecker::new(scene, &space, trajectory.dofs(), q, rules, resolution);
-    let mut room = Room::default();
+    let mut followed = Followed::default();
     let sample = |time: f64| trajectory.sample(time).positions;
     for (time, at) in dense_states(&checker, trajectory.times(), &sample, resolution) {
         if let (Some(tilt), Some(held), SegmentKind::Carry) = (keep_upright, &segment.held, segment.kind) {
@@ -192,7 +192,7 @@ fn replay(
                 return Err((time, "the held object tilts too far".into()));
             }
         }
-        room.look(&mut checker, at).map_err(|by| (time, checker.describe(by)))?;
+        checker.follow(&at, &mut followed).map_err(|by| (time, checker.describe(by)))?;
     }
     Ok(checker.states())
 }
@@ -309,10 +309,11 @@ fn dense_states<C: EdgeChecker>(
         let to = sample(t[1]);
         let difference: Vec<f64> = from.iter().zip(&to).map(|(a, b)| b - a).collect();
         let pieces = (checker.travel(&difference) / resolution).ceil().max(1.0) as usize;
-        for i in 1..=pieces {
+        for i in 1..pieces {
             let time = t[0] + (t[1] - t[0]) * i as f64 / pieces as f64;
             states.push((time, sample(time)));
         }
+        states.push((t[1], to.clone()));
         from = to;
     }
     states

@@ -6,7 +6,7 @@ use robotc_core::{Configuration, Pose};
 use super::problem::GoalContext;
 use super::rejections::Cause;
 use crate::cartesian::{LineObstacle, cartesian_line};
-use crate::edge::{EdgeChecker, Obstruction, walk_edge};
+use crate::edge::{EdgeChecker, Obstruction};
 use crate::scene::{RobotChecker, Rules, Scene};
 
 /// What an obstruction is, by name.
@@ -34,7 +34,7 @@ pub(super) fn fine_checker<'a>(
 
 /// Whether the arm is free at `q`.
 pub(super) fn state_is_free(checker: &mut RobotChecker<'_>, q: &[f64]) -> Result<(), Cause> {
-    checker.state(q).map(|_| ()).map_err(|by| cause(checker.scene(), by))
+    checker.is_free(q).map_err(|by| cause(checker.scene(), by))
 }
 
 /// Moves the tool from the configuration `from` (taken to be valid under `rules`) by `offset`, and checks that the end
@@ -110,5 +110,5 @@ pub(super) fn fingers_move(
     q.set(cx.problem.arm.dofs(), arm_values);
     let dofs = &cx.gripper().dofs;
     let mut checker = RobotChecker::new(scene, cx.finger_space, dofs, &q, rules, cx.options.fine_resolution);
-    walk_edge(&mut checker, from, to).map_err(|blocked| cause(scene, blocked.by))
+    checker.edge(from, to).map_err(|blocked| cause(scene, blocked.by))
 }

@@ -1,10 +1,11 @@
 //! The edge checker of a robot in a scene.
 
-use robotc_core::{Configuration, DofIdx, JointIdx, LinkIdx, LinkPoses, TypedVec};
+use robotc_core::{Configuration, DofIdx, LinkPoses};
 
+use super::pairs::Pairs;
 use super::{Movers, Rules, Scene};
 use crate::constraint::Constraint;
-use crate::edge::{EdgeChecker, Obstruction};
+use crate::edge::{Blocked, EdgeChecker, Obstruction};
 use crate::space::Space;
 use crate::travel::TravelBounds;
 
@@ -13,16 +14,52 @@ pub struct RobotChecker<'a> {
     scene: &'a Scene,
     space: &'a Space,
     dofs: &'a [DofIdx],
-    movers: Movers,
+    pairs: Pairs,
     bounds: TravelBounds,
     resolution: f64,
     rules: Rules,
     constraint: Option<&'a dyn Constraint>,
     /// Clearance beyond this is not looked for.
     room: f64,
+    /// For each row of the pairs, its pace; found when a clearance is asked for.
+    paces: Option<Vec<f64>>,
     q: Configuration,
     poses: LinkPoses,
     states: u64,
+    work: Work,
+}
+
+/// What is known along a motion that is [followed](RobotChecker::follow).
+#[derive(Debug, Default)]
+pub(crate) struct Followed {
+    /// The state that was asked about last.
+    at: Vec<f64>,
+    /// For each row of the pairs, how far it has brought things together so far at most.
+    travelled: Vec<f64>,
+    travels: Vec<f64>,
+    /// For each pair, up to where in that it is known to stay apart.
+    lasts: Vec<f64>,
+    /// For each row, the first of these.
+    soonest: Vec<f64>,
+}
+
+/// Memory of edge checks.
+#[derive(Debug, Default)]
+struct Work {
+    difference: Vec<f64>,
+    travels: Vec<f64>,
+    at: Vec<f64>,
+    /// Pieces of an edge with the pairs that are open in them, as ranges of `open`.
+    pieces: Vec<Piece>,
+    open: Vec<u32>,
+}
+
+/// A piece of an edge: what is within `half` of `middle`, as fractions of the edge.
+#[derive(Debug, Clone)]
+struct Piece {
+    middle: f64,
+    half: f64,
+    pairs: std::ops::Range<usize>,
 }
 
 /// Clearance beyond this many times the resolution is not looked for: looking would cost more than it saves.
@@ -39,9 +76,13 @@ impl<'a> RobotChecker<'a> {
         rules: Rules,
         resolution: f64,
     ) -> Self {
-        let (bounds, movers) = movers(scene, dofs, &rules);
+        let rows = scene.rows.of(scene, dofs);
+        let mut bounds = rows.bounds.clone();
+        if let Some(grip) = &rules.held {
+            rows.of_held(scene, grip, &rules.gripper, &mut bounds);
+        }
         Self {
-            movers,
+            pairs: Pairs::new(scene, dofs, &rules),
             bounds,
             scene,
             space,
@@ -50,9 +91,11 @@ impl<'a> RobotChecker<'a> {
             rules,
             constraint: None,
             room: ROOM * resolution,
+            paces: None,
             q: q.clone(),
             poses: LinkPoses::default(),
             states: 0,
+            work: Work::default(),
         }
     }
 
@@ -74,8 +117,7 @@ impl<'a> RobotChecker<'a> {
 
     /// The same checker that lets links go through each other, and through what is held.
     pub fn without_self_collisions(mut self) -> Self {
-        self.movers.pairs.clear();
-        self.movers.beside_held.clear();
+        self.pairs.without_self();
         self
     }
 
@@ -84,69 +126,151 @@ impl<'a> RobotChecker<'a> {
         self.scene
     }
 
-    /// Number of states looked at so far.
+    /// Number of states looked at so far, at least in part.
     pub fn states(&self) -> u64 {
         self.states
+    }
+
+    /// Whether a state is valid, without its clearance.
+    pub fn is_free(&mut self, q: &[f64]) -> Result<(), Obstruction> {
+        let room = std::mem::replace(&mut self.room, 0.0);
+        let outcome = self.state(q);
+        self.room = room;
+        outcome.map(|_| ())
+    }
+
+    /// Puts the robot where it is a fraction of the way along an edge.
+    fn place_along(&mut self, from: &[f64], fraction: f64, work: &mut Work) {
+        work.at.clear();
+        work.at.extend(from.iter().zip(&work.difference).map(|(a, d)| a + fraction * d));
+        self.place(&work.at);
+    }
+
+    fn place(&mut self, q: &[f64]) {
+        self.states += 1;
+        self.q.set(self.dofs, q);
+        self.scene.kinematics.link_poses(&self.q, &mut self.poses);
+    }
+
+    /// Looks at the next state of a motion that is asked about state by state; of the pairs, only at those whose room where they
+    /// were looked at last may be used up by now.
+    pub(crate) fn follow(&mut self, next: &[f64], followed: &mut Followed) -> Result<(), Obstruction> {
+        if !self.space.contains(next) {
+            return Err(Obstruction::Bounds);
+        }
+        let Followed { at, travelled, travels, lasts, soonest } = followed;
+        if lasts.len() == self.pairs.len() && at.len() == next.len() {
+            at.iter_mut().zip(next).for_each(|(at, next)| *at = next - *at);
+            self.pairs.travels(at, travels);
+            travelled.iter_mut().zip(&*travels).for_each(|(sum, travel)| *sum += travel);
+        } else {
+            self.pairs.travels(next, travels);
+            travelled.clear();
+            travelled.resize(travels.len(), 0.0);
+            lasts.clear();
+            lasts.resize(self.pairs.len(), 0.0);
+            soonest.clear();
+            soonest.resize(travels.len(), 0.0);
+        }
+        at.clear();
+        at.extend_from_slice(next);
+        if soonest.iter().zip(&*travelled).all(|(soonest, travelled)| travelled < soonest) {
+            return Ok(());
+        }
+        self.place(next);
+        // Pairs are by row.
+        let mut pair = 0;
+        for (row, soonest) in soonest.iter_mut().enumerate() {
+            let due = travelled[row] >= *soonest;
+            let mut first = f64::INFINITY;
+            while pair < lasts.len() && self.pairs.row(pair) == row {
+                if due && travelled[row] >= lasts[pair] {
+                    let room = self.pairs.room(self.scene, &self.rules, &self.poses, pair, self.room)?;
+                    lasts[pair] = travelled[row] + room;
+                }
+                first = first.min(lasts[pair]);
+                pair += 1;
+            }
+            *soonest = first;
+        }
+        Ok(())
+    }
+
+    /// Whether the states of an edge satisfy the constraint: its end, and as many in between as its size asks for.
+    fn keeps_constraint(&self, from: &[f64], work: &mut Work) -> Result<(), Blocked> {
+        let Some(constraint) = self.constraint else { return Ok(()) };
+        let count = constraint.size(&work.difference).ceil().max(1.0);
+        for i in (1..=count as usize).rev() {
+            let fraction = i as f64 / count;
+            work.at.clear();
+            work.at.extend(from.iter().zip(&work.difference).map(|(a, d)| a + fraction * d));
+            if !constraint.holds(&work.at) {
+                return Err(Blocked { fraction, by: Obstruction::Constraint });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether all pairs stay apart along an edge: each is looked at so often that between the looks it closes by no more than
+    /// its room there and half of the resolution.
+    fn keeps_apart(&mut self, from: &[f64], work: &mut Work) -> Result<(), Blocked> {
+        self.pairs.travels(&work.difference, &mut work.travels);
+        let slack = 0.5 * self.resolution;
+        let farthest = ROOM * self.resolution;
+        work.open.clear();
+        work.open.extend(0..self.pairs.len() as u32);
+        work.pieces.clear();
+        // The end stands for the whole edge where it can.
+        work.pieces.push(Piece { middle: 1.0, half: 1.0, pairs: 0..work.open.len() });
+        let mut next = 0;
+        while let Some(Piece { middle, half, pairs }) = work.pieces.get(next).cloned() {
+            next += 1;
+            self.place_along(from, middle, work);
+            let left = work.open.len();
+            for i in pairs {
+                let pair = work.open[i];
+                let needed = half * work.travels[self.pairs.row(pair as usize)] - slack;
+                // Room that would not be enough is not worth finding.
+                let far = if needed <= farthest { needed } else { 0.0 };
+                let room = self.pairs.room(self.scene, &self.rules, &self.poses, pair as usize, far);
+                let room = room.map_err(|touch| Blocked { fraction: middle, by: touch.into() })?;
+                if room < needed {
+                    work.open.push(pair);
+                }
+            }
+            let open = left..work.open.len();
+            if open.is_empty() {
+                continue;
+            }
+            if middle == 1.0 {
+                work.pieces.push(Piece { middle: 0.5, half: 0.5, pairs: open });
+            } else {
+                let quarter = 0.5 * half;
+                for middle in [middle - quarter, middle + quarter] {
+                    work.pieces.push(Piece { middle, half: quarter, pairs: open.clone() });
+                }
+            }
+        }
+        Ok(())
     }
 }
 
 /// What `dofs` move, with bounds on its travel. Pairs that they do not move against each other are left out.
 pub(super) fn movers(scene: &Scene, dofs: &[DofIdx], rules: &Rules) -> (TravelBounds, Movers) {
-    let mut bounds = TravelBounds::new(dofs);
-    let rows: TypedVec<LinkIdx, Vec<f64>> = scene
-        .links
-        .enumerate()
-        .map(|(link, shape)| match shape.is_empty() {
-            true => vec![0.0; dofs.len()],
-            false => bounds.add(&scene.kinematics, link, shape.radius_about_origin()),
-        })
-        .collect();
-    let held_row = rules.held.as_ref().map(|grip| {
-        let offset = grip.link_from_body.translation.vector.norm();
-        let radius = scene.bodies[grip.body].shape.radius_about_origin() + offset;
-        bounds.add(&scene.kinematics, grip.link, radius)
-    });
+    let rows = scene.rows.of(scene, dofs);
+    let mut bounds = rows.bounds.clone();
+    let of_held = rules.held.as_ref().map(|grip| rows.of_held(scene, grip, &rules.gripper, &mut bounds));
     let moves = |row: &[f64]| row.iter().any(|r| *r > 0.0);
+    let moving = rows.links.enumerate().filter(|(_, row)| moves(row));
     let movers = Movers {
-        links: rows.enumerate().filter(|(_, row)| moves(row)).map(|(l, row)| (l, bounds.pace(row))).collect(),
-        pairs: scene
-            .self_pairs
-            .iter()
-            .map(|&(a, b)| (a, b, relative(scene, dofs, (a, &rows[a]), (b, &rows[b]))))
-            .filter(|(_, _, row)| moves(row))
-            .map(|(a, b, row)| (a, b, bounds.pace(&row)))
-            .collect(),
-        held: held_row.as_ref().map_or(1.0, |row| bounds.pace(row)),
-        beside_held: match (&rules.held, &held_row) {
-            (Some(grip), Some(held)) => rows
-                .enumerate()
-                .filter(|(link, _)| {
-                    !scene.links[*link].is_empty() && rules.gripper.binary_search(link).is_err()
-                })
-                .map(|(link, row)| (link, relative(scene, dofs, (link, row), (grip.link, held))))
-                .filter(|(_, row)| moves(row))
-                .map(|(link, row)| (link, bounds.pace(&row)))
-                .collect(),
-            _ => vec![],
-        },
+        links: moving.map(|(link, row)| (link, bounds.pace(row))).collect(),
+        pairs: rows.pairs.iter().map(|(a, b, row)| (*a, *b, bounds.pace(row))).collect(),
+        held: of_held.as_ref().map_or(1.0, |(row, _)| bounds.pace(row)),
+        beside_held: of_held.map_or_else(Vec::new, |(_, beside)| {
+            beside.iter().map(|(link, row)| (*link, bounds.pace(row))).collect()
+        }),
     };
     (bounds, movers)
-}
-
-/// How far each degree of freedom moves a body on one link seen from the other; one that moves both as one does not.
-fn relative(scene: &Scene, dofs: &[DofIdx], a: (LinkIdx, &[f64]), b: (LinkIdx, &[f64])) -> Vec<f64> {
-    let model = scene.kinematics.model();
-    let above = |link| model.joints_between(model.root(), link).unwrap_or_default();
-    let (joints_a, joints_b) = (above(a.0), above(b.0));
-    let between = |joints: &[JointIdx], others: &[JointIdx], dof: DofIdx| {
-        joints.iter().any(|j| !others.contains(j) && model.driving_dof(*j) == Some(dof))
-    };
-    let column = |(i, &dof): (usize, &DofIdx)| {
-        let of_a = if between(&joints_a, &joints_b, dof) { a.1[i] } else { 0.0 };
-        let of_b = if between(&joints_b, &joints_a, dof) { b.1[i] } else { 0.0 };
-        of_a + of_b
-    };
-    dofs.iter().enumerate().map(column).collect()
 }
 
 impl EdgeChecker for RobotChecker<'_> {
@@ -155,19 +279,27 @@ impl EdgeChecker for RobotChecker<'_> {
     }
 
     fn state(&mut self, q: &[f64]) -> Result<f64, Obstruction> {
-        self.states += 1;
         if !self.space.contains(q) {
             return Err(Obstruction::Bounds);
         }
         if self.constraint.is_some_and(|c| !c.holds(q)) {
             return Err(Obstruction::Constraint);
         }
-        self.q.set(self.dofs, q);
-        self.scene.kinematics.link_poses(&self.q, &mut self.poses);
-        let scene = self.scene;
-        let robot = &scene.world_from_robot;
-        let room = scene.against_bodies(robot, &self.poses, &self.movers, &self.rules, self.room)?;
-        Ok(scene.against_self(&self.poses, &self.movers, &self.rules, room)?)
+        self.place(q);
+        if self.room == 0.0 {
+            for pair in 0..self.pairs.len() {
+                self.pairs.room(self.scene, &self.rules, &self.poses, pair, 0.0)?;
+            }
+            return Ok(0.0);
+        }
+        let paces = self.paces.get_or_insert_with(|| self.pairs.paces(&self.bounds));
+        let mut clearance = self.room;
+        for pair in 0..self.pairs.len() {
+            let pace = paces[self.pairs.row(pair)];
+            let room = self.pairs.room(self.scene, &self.rules, &self.poses, pair, clearance * pace)?;
+            clearance = clearance.min(room / pace);
+        }
+        Ok(clearance)
     }
 
     fn travel(&self, difference: &[f64]) -> f64 {
@@ -177,6 +309,19 @@ impl EdgeChecker for RobotChecker<'_> {
 
     fn resolution(&self) -> f64 {
         self.resolution
+    }
+
+    /// Each pair that has to stay apart is looked at as often as its own travel and its own room ask for; the end comes first,
+    /// then the middle, then the middles of what is left.
+    fn edge(&mut self, from: &[f64], to: &[f64]) -> Result<(), Blocked> {
+        if !self.space.contains(to) {
+            return Err(Blocked { fraction: 1.0, by: Obstruction::Bounds });
+        }
+        let mut work = std::mem::take(&mut self.work);
+        self.space.difference_into(from, to, &mut work.difference);
+        let outcome = self.keeps_constraint(from, &mut work).and_then(|()| self.keeps_apart(from, &mut work));
+        self.work = work;
+        outcome
     }
 
     fn describe(&self, obstruction: Obstruction) -> String {

@@ -8,6 +8,8 @@
 mod article;
 mod checker;
 mod mobile;
+mod pairs;
+mod rows;
 mod shape;
 
 use std::sync::Arc;
@@ -20,6 +22,7 @@ use robotc_core::world::World;
 use robotc_core::{BodyIdx, Configuration, Kinematics, LinkIdx, LinkPoses, Pose, TypedVec};
 
 pub use article::ArticleChecker;
+pub(crate) use checker::Followed;
 pub use checker::RobotChecker;
 pub use mobile::MobileChecker;
 use shape::Shape;
@@ -34,6 +37,8 @@ pub struct Scene {
     links: Arc<TypedVec<LinkIdx, Shape>>,
     self_pairs: Arc<Vec<(LinkIdx, LinkIdx)>>,
     bodies: TypedVec<BodyIdx, Body>,
+    /// Bounds on travel, for the degrees of freedom that were asked for.
+    rows: Arc<rows::KnownRows>,
 }
 
 #[derive(Debug, Clone)]
@@ -114,6 +119,7 @@ impl Scene {
             links: Arc::new(links.iter().map(|parts| Shape::new(parts)).collect()),
             self_pairs: Arc::new(self_pairs),
             bodies: world.bodies().iter().zip(bodies).map(body).collect(),
+            rows: Arc::default(),
         }
     }
 
