@@ -96,8 +96,22 @@ pub const CRX: Arm = Arm {
     tip: [0.7, -0.15, 0.54],
 };
 
+/// UFACTORY xArm 6: no triple at all.
+pub const XARM6: Arm = Arm {
+    name: "xarm6",
+    axes: &[
+        (Z, [0.0, 0.0, 0.267]),
+        (Y, [0.0, 0.0, 0.267]),
+        (Y, [0.053, 0.0, 0.5515]),
+        (MINUS_Z, [0.1305, 0.0, 0.209]),
+        (Y, [0.1305, 0.0, 0.209]),
+        (MINUS_Z, [0.2065, 0.0, 0.112]),
+    ],
+    tip: [0.2065, 0.0, 0.112],
+};
+
 /// Arms whose sources are generated.
-pub const ARMS: [&Arm; 5] = [&KR6, &UR5E, &PANDA, &IIWA, &CRX];
+pub const ARMS: [&Arm; 6] = [&KR6, &UR5E, &PANDA, &IIWA, &CRX, &XARM6];
 
 impl Arm {
     /// The arm as the inverse-kinematics compiler takes it.

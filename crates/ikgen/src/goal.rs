@@ -279,8 +279,7 @@ impl GoalType {
     }
 
     /// Values of the added joints at which they turn nothing.
-    #[cfg(feature = "generate")]
-    pub(crate) fn at_rest(self) -> Vec<f64> {
+    pub fn at_rest(self) -> Vec<f64> {
         self.added().iter().map(|a| -a.offset / a.multiplier).collect()
     }
 }

@@ -1,4 +1,5 @@
-//! Writes the sources of all arms to `generated/`; an arm that the compiler refuses is left out of the comparison.
+//! Writes the sources of all arms to `generated/`, and the arms themselves for `peers.py`; an arm that the compiler refuses is left out
+//! of the comparison.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -11,6 +12,7 @@ fn main() -> std::io::Result<()> {
     std::fs::create_dir_all(&folder)?;
     let mut modules = String::new();
     let mut contenders = String::new();
+    let mut arms = Vec::new();
     for arm in ARMS {
         let name = arm.name;
         let compiled = match compile(&arm.chain(), &Options::default()) {
@@ -21,6 +23,16 @@ fn main() -> std::io::Result<()> {
             }
         };
         println!("{name}: {}", compiled.class);
+        let c = compiled.c_source(name).map_err(std::io::Error::other)?;
+        std::fs::write(folder.join(format!("{name}.h")), c.header)?;
+        std::fs::write(folder.join(format!("{name}.c")), c.source)?;
+        let axes = arm.axes.iter().map(|(axis, point)| format!("[{axis:?}, {point:?}]"));
+        arms.push(format!(
+            "{{\"name\": {name:?}, \"axes\": [{}], \"tip\": {:?}, \"given\": {:?}}}",
+            axes.collect::<Vec<_>>().join(", "),
+            arm.tip,
+            compiled.free
+        ));
         for (suffix, std) in [("std", true), ("core", false)] {
             let path = folder.join(format!("{name}_{suffix}.rs"));
             std::fs::write(&path, compiled.rust_source(&RustOptions { std }))?;
@@ -28,6 +40,7 @@ fn main() -> std::io::Result<()> {
             let _ = writeln!(contenders, "    contender!({name:?}, {suffix:?}, {name}_{suffix}),");
         }
     }
+    std::fs::write(folder.join("arms.json"), format!("[\n{}\n]\n", arms.join(",\n")))?;
     let list = format!(
         "/// The generated solvers.\npub fn all() -> Vec<Generated> {{\n    vec![\n{contenders}    ]\n}}\n"
     );

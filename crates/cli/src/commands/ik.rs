@@ -1,16 +1,19 @@
 //! `robotc ik`: inverse kinematics of one chain, without any specification.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
+use robotc_core::ik::{IkSolutions, InverseKinematics as _};
 use robotc_core::urdf::{self, MeshPolicy};
-use robotc_core::{Kinematics, LinkIdx, RobotModel, SerialChain, Sources, diag};
+use robotc_core::{Kinematics, LinkIdx, RobotModel, Seed, SerialChain, Sources, diag};
 use robotc_ikgen::backend::RustOptions;
 use robotc_ikgen::generate::natural;
 use robotc_ikgen::report::{ProofOptions, Report, prove};
-use robotc_ikgen::{Compiled, GoalType, Options, compile};
+use robotc_ikgen::{Compiled, GoalType, Options, Refusal, compile};
 use robotc_kb::os::OsSystem;
+use robotc_runtime::picture::IkPicture;
+use robotc_runtime::view;
 
 use super::compile::write_whole;
 use crate::description::DescriptionArgs;
@@ -21,6 +24,7 @@ use crate::output::{Failure, Outcome, print, say};
 #[command(after_help = "Examples:\n  robotc ik arm.urdf --base base_link --tip tool0\n  \
     robotc ik arm.urdf --base base_link --tip tool0 -o arm_ik.rs --report arm_ik.json\n  \
     robotc ik arm.urdf --base base_link --tip tool0 -o arm_ik.c\n  \
+    robotc ik arm.urdf --base base_link --tip tool0 --view solutions.html\n  \
     robotc ik welder.urdf --base base_link --tip torch --type translationdirection5d\n\n\
     The source is one Rust file without dependencies that needs neither std nor memory allocation, or a C99 source with its \
     header. It is written only when the solver passed its proof.")]
@@ -68,9 +72,18 @@ pub(crate) struct Ik {
     /// Solve the chain exactly as described: the same as --tolerance 0
     #[arg(long, conflicts_with = "tolerance")]
     no_snap: bool,
+    /// Seconds that the search for a solver may take
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
+    budget: f64,
     /// Show what was tried
     #[arg(long)]
     explain: bool,
+    /// File for a 3-D page with all solutions of a pose side by side
+    #[arg(long, value_name = "FILE.html")]
+    view: Option<PathBuf>,
+    /// Joint values of that pose, separated by commas, radians and metres [default: a drawn pose with many solutions]
+    #[arg(long, value_name = "Q", value_delimiter = ',', allow_hyphen_values = true, requires = "view")]
+    at: Option<Vec<f64>>,
 }
 
 /// The argument `--type`.
@@ -100,9 +113,12 @@ enum Language {
 }
 
 pub(crate) fn run(args: &Ik) -> Outcome {
-    let chain = chain(args)?;
+    let Arm { kinematics, base, chain } = arm(args)?;
     if !args.tolerance.is_finite() || args.tolerance < 0.0 {
         return Err(Failure::Input("--tolerance cannot be negative".into()));
+    }
+    if args.budget.is_nan() || args.budget <= 0.0 {
+        return Err(Failure::Input("--budget must be more than 0".into()));
     }
     let goal = match args.goal {
         Goal::Auto => natural(&chain),
@@ -115,7 +131,7 @@ pub(crate) fn run(args: &Ik) -> Outcome {
         ..Options::default()
     };
     let clock = Instant::now();
-    let result = compile(&chain, &options);
+    let result = compile_within(&chain, &options, args.budget);
     let generation_s = clock.elapsed().as_secs_f64();
     let (report, trace, compiled) = match &result {
         Ok(compiled) => {
@@ -139,16 +155,81 @@ pub(crate) fn run(args: &Ik) -> Outcome {
     if let Some(path) = &args.output {
         write_source(path, compiled, args)?;
     }
+    if let Some(path) = &args.view {
+        let values = shown_values(compiled, args)?;
+        let base_from_tip = compiled.longer_chain().forward(&values);
+        let mut found = IkSolutions::new();
+        let free: Vec<f64> = compiled.free.iter().map(|v| values[*v]).collect();
+        compiled.solver().solve(&base_from_tip, &free, &mut found);
+        let solutions: Vec<Vec<f64>> = found.iter().map(<[f64]>::to_vec).collect();
+        let picture =
+            IkPicture { kinematics: &kinematics, chain: &chain, base, base_from_tip, solutions: &solutions };
+        write_whole(path, view::html(&picture.draw()).as_bytes())?;
+        say(&format!("wrote {}; open it in a browser", path.display()));
+    }
     Ok(())
 }
 
-fn chain(args: &Ik) -> Outcome<SerialChain> {
+/// Compiles on another thread, which is left behind when the seconds are over.
+fn compile_within(chain: &SerialChain, options: &Options, seconds: f64) -> Result<Compiled, Refusal> {
+    let (send, receive) = std::sync::mpsc::channel();
+    let work = (chain.clone(), options.clone());
+    std::thread::spawn(move || send.send(compile(&work.0, &work.1)));
+    let budget = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+    receive.recv_timeout(budget).unwrap_or_else(|_| {
+        let reason = format!(
+            "no solver was found within {seconds} s; --budget allows more, --free or --type may ask for less"
+        );
+        Err(Refusal { reason, trace: Vec::new() })
+    })
+}
+
+/// The chain, and what it is part of.
+struct Arm {
+    kinematics: Kinematics,
+    base: LinkIdx,
+    chain: SerialChain,
+}
+
+fn arm(args: &Ik) -> Outcome<Arm> {
     let mut sources = Sources::new();
-    let options = args.reading.options(MeshPolicy::Ignore);
-    let (model, found) = urdf::load(&OsSystem, &mut sources, &args.urdf, &options);
+    // Meshes are for looking at alone.
+    let meshes = if args.view.is_some() { MeshPolicy::SkipMissing } else { MeshPolicy::Ignore };
+    let (model, found) = urdf::load(&OsSystem, &mut sources, &args.urdf, &args.reading.options(meshes));
     let model = crate::input::accept(model, &found, &sources)?;
     let (base, tip) = (link(&model, &args.base)?, link(&model, &args.tip)?);
-    SerialChain::between(&Kinematics::new(model.into()), base, tip).map_err(|e| Failure::Input(e.to_string()))
+    let kinematics = Kinematics::new(model.into());
+    let chain = SerialChain::between(&kinematics, base, tip).map_err(|e| Failure::Input(e.to_string()))?;
+    Ok(Arm { kinematics, base, chain })
+}
+
+/// Values whose pose is shown: those that were given, or of some drawn within limits those whose pose has most solutions.
+fn shown_values(compiled: &Compiled, args: &Ik) -> Outcome<Vec<f64>> {
+    let longer = compiled.longer_chain();
+    let own = compiled.chain().variables.len();
+    // Joints that the goal adds turn nothing.
+    let rest = compiled.program.goal.at_rest();
+    if let Some(values) = &args.at {
+        if values.len() != own || values.iter().any(|x| !x.is_finite()) {
+            return Err(Failure::Input(format!("--at takes {own} numbers, one for each joint")));
+        }
+        return Ok(values.iter().copied().chain(rest).collect());
+    }
+    let solver = compiled.solver();
+    let mut rng = Seed::new(args.seed).split("shown pose").rng();
+    let mut found = IkSolutions::new();
+    let mut most = (0, Vec::new());
+    for _ in 0..50 {
+        let range = |x: f64| if x.is_finite() { x.clamp(-3.1, 3.1) } else { 3.1_f64.copysign(x) };
+        let limits = longer.variables[..own].iter().map(|v| (range(v.lower), range(v.upper)));
+        let drawn: Vec<f64> = limits.map(|(low, high)| rng.range(low, high)).chain(rest.clone()).collect();
+        let free: Vec<f64> = compiled.free.iter().map(|v| drawn[*v]).collect();
+        solver.solve(&longer.forward(&drawn), &free, &mut found);
+        if most.1.is_empty() || found.len() > most.0 {
+            most = (found.len(), drawn);
+        }
+    }
+    Ok(most.1)
 }
 
 fn link(model: &RobotModel, name: &str) -> Outcome<LinkIdx> {
@@ -190,12 +271,13 @@ fn show(chain: &SerialChain, report: &Report) {
     print(&format!("generated in {:.2} s, {} bytes of Rust", report.generation_s, report.source_bytes));
     print("set        poses  solved  recovered  wrong  max error  solutions  median");
     for set in &report.sets {
+        // Elsewhere the joint vector may be one of infinitely many.
+        let recovered = if set.name == "random" { set.recovered.to_string() } else { "-".into() };
         print(&format!(
-            "{:9} {:6}  {:6}  {:9}  {:5}  {:9.1e}  {:9.2}  {:4.1} us",
+            "{:9} {:6}  {:6}  {recovered:>9}  {:5}  {:9.1e}  {:9.2}  {:4.1} us",
             set.name,
             set.poses,
             set.solved,
-            set.recovered,
             set.wrong,
             set.max_error,
             set.mean_solutions,

@@ -421,11 +421,8 @@ fn kernel(options: &RustOptions, out: &mut String) {
         .map(|(name, source)| (name, source.split("#[cfg(test)]").next().unwrap_or(source)))
         .collect();
     for (name, source) in prune::needed(&files, USES, &format!("{out}{TESTS}")) {
-        let _ = writeln!(out, "mod {name} {{");
-        for line in source.trim_end().lines() {
-            let _ = if line.is_empty() { writeln!(out) } else { writeln!(out, "    {line}") };
-        }
-        out.push_str("}\n\n");
+        // Not indented: the lines are as long as where they come from.
+        let _ = write!(out, "mod {name} {{\n\n{}\n}}\n\n", source.trim());
     }
     out.truncate(out.trim_end().len() + 1);
 }

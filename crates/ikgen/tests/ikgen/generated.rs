@@ -269,9 +269,32 @@ fn run(folder: &Path, compiler: &str, arguments: &[&str]) {
 #[test]
 fn generated_sources_are_as_recorded() {
     let compiled = compile(&arms::kr6(), &Options::default()).unwrap();
-    golden::check("generated/kr6.rs", &compiled.rust_source(&RustOptions::default()));
+    // They are what the example is made of.
+    let example = |file: &str| format!("../../../../examples/drop_in_ik/{file}");
+    golden::check(&example("src/kr6.rs"), &compiled.rust_source(&RustOptions::default()));
     let c = compiled.c_source("kr6").unwrap();
-    golden::check("generated/kr6.h", &c.header);
-    golden::check("generated/kr6.c", &c.source);
+    golden::check(&example("cpp/kr6.h"), &c.header);
+    golden::check(&example("cpp/kr6.c"), &c.source);
     assert!(matches!(compiled.c_source("kr-6"), Err(CError::Name(_))));
+}
+
+#[test]
+fn generated_c_is_used_from_c_plus_plus() {
+    if ["cc", "c++"].iter().any(|c| Command::new(c).arg("--version").output().is_err()) {
+        println!("skipped: no C or C++ compiler");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let example = golden::folder().join("../../../../examples/drop_in_ik/cpp");
+    let file = |name: &str| example.join(name).display().to_string();
+    let strict = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-O1"];
+    let source = file("kr6.c");
+    let flags = ["-std=c99", "-ffp-contract=off", "-c", &source, "-o", "kr6.o"];
+    run(folder.path(), "cc", &[&strict[..], &flags].concat());
+    let source = file("main.cpp");
+    let flags = ["-std=c++11", &source, "kr6.o", "-lm", "-o", "reach"];
+    run(folder.path(), "c++", &[&strict[..], &flags].concat());
+    let output = Command::new(folder.path().join("reach")).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success() && text.ends_with("8 solutions, all reach the pose\n"), "{text}");
 }

@@ -6,6 +6,7 @@
 mod base_placement;
 mod convex_parts;
 mod grasp_set;
+mod ik_solutions;
 mod link_statistics;
 mod palette;
 mod reachability;
@@ -17,6 +18,8 @@ use robotc_kb::{Knowledge, LoadError};
 use thiserror::Error;
 
 use crate::record::Recording;
+
+pub use ik_solutions::IkPicture;
 
 /// Draws the artefacts of a kind; says how many of them.
 type Draw = fn(&Knowledge, &Wanted<'_>, &mut Recording) -> Result<usize, LoadError>;

@@ -24,6 +24,11 @@ pub trait Contender {
         1
     }
 
+    /// How often each of them is in it.
+    fn repeats(&self) -> usize {
+        1
+    }
+
     /// Solves the pose of this number; returns the number of answers.
     fn solve(&mut self, task: usize) -> usize;
 

@@ -55,7 +55,7 @@ fn race(arm: &Arm, compiled: &Compiled, count: usize) -> Vec<Row> {
         peer("ik-geo", Box::new(IkGeo::new(arm, &Class::ThreeParallelTwoIntersecting)));
     } else if arm.name == CRX.name {
         peer("crx-kinematics", Box::new(Crx::new_10ia()));
-    } else {
+    } else if arm.axes.len() == 7 {
         // What a given joint of seven is measured by: the six joints of the KR 6.
         peer("ik-geo on kr6", Box::new(IkGeo::new(&KR6, &Class::SphericalTwoParallel)));
     }

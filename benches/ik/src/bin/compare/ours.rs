@@ -11,8 +11,14 @@ use crate::trial::Entrant;
 /// The engines of the run-time library.
 pub fn entrants(compiled: &Compiled) -> Vec<Entrant> {
     let single = Bytecode { solver: compiled.solver(), tasks: Vec::new(), found: IkSolutions::new() };
-    let batched =
-        Batched { solver: compiled.solver(), poses: Vec::new(), free: Vec::new(), found: Batch::default() };
+    let batched = Batched {
+        solver: compiled.solver(),
+        poses: Vec::new(),
+        free: Vec::new(),
+        repeats: 1,
+        found: Batch::default(),
+        current: 0,
+    };
     vec![
         Entrant { name: "robotc bytecode".into(), solver: Box::new(single) },
         Entrant { name: "robotc bytecode, batch".into(), solver: Box::new(batched) },
@@ -44,37 +50,43 @@ impl Contender for Bytecode {
 /// Poses of a batch.
 const BATCH: usize = 1000;
 
-/// Many poses in one call.
+/// All poses in one call, again and again until they are [`BATCH`].
 struct Batched {
     solver: Solver,
     poses: Vec<Pose>,
     free: Vec<f64>,
+    repeats: usize,
     found: Batch,
+    /// Which of them is looked at.
+    current: usize,
 }
 
 impl Contender for Batched {
     fn load(&mut self, tasks: &[Task]) {
-        self.poses = tasks.iter().map(pose).collect();
-        self.free = tasks.iter().flat_map(|task| task.free.clone()).collect();
+        self.repeats = BATCH.div_ceil(tasks.len());
+        let all = || (0..self.repeats).flat_map(|_| tasks);
+        self.poses = all().map(pose).collect();
+        self.free = all().flat_map(|task| task.free.clone()).collect();
     }
 
     fn group(&self) -> usize {
-        BATCH
+        self.poses.len() / self.repeats
+    }
+
+    fn repeats(&self) -> usize {
+        self.repeats
     }
 
     fn solve(&mut self, task: usize) -> usize {
-        let end = (task + BATCH).min(self.poses.len());
-        let given = self.free.len() / self.poses.len();
-        self.solver.solve_batch(
-            &self.poses[task..end],
-            &self.free[task * given..end * given],
-            &mut self.found,
-        );
+        if task == 0 {
+            self.solver.solve_batch(&self.poses, &self.free, &mut self.found);
+        }
+        self.current = task;
         self.found.len()
     }
 
     fn answers(&self) -> Vec<Vec<f64>> {
-        self.found.solutions(0).map(<[f64]>::to_vec).collect()
+        self.found.solutions(self.current).map(<[f64]>::to_vec).collect()
     }
 }
 
