@@ -20,7 +20,7 @@ pub use caging::{Attempt, CagingBenchOptions, CagingPlace, CagingReport, measure
 pub use checks::{CheckRates, measure_checks};
 pub use mobile::{MobileBenchOptions, MobileFigures, MobileReport, measure_mobile};
 pub use placement::{PlacementFigures, PlacementReport, measure_placement};
-pub use problems::{Problem, ProblemSet, ProblemSetError};
+pub use problems::{Obstacle, Problem, ProblemSet, ProblemSetError};
 pub use report::{Report, Row, SceneSummary, Summary};
 pub use robot::{BenchError, BenchRobot, Stage};
 pub use run::{BenchOptions, run};

@@ -1,7 +1,7 @@
 //! The edge checker over the lane kernel: whole motions proven free, or shown to be blocked.
 
 use pulp::{Simd, WithSimd};
-use robotc_core::geom::{ConvexPart, distance, within};
+use robotc_core::geom::{ConvexPart, contact, distance, separation};
 use robotc_core::ids::Idx;
 use robotc_core::{BodyIdx, Pose};
 
@@ -11,7 +11,7 @@ use super::kernel::{Around, Close, MOST_LANES, Motion, Scratch, look};
 use super::mechanism::{Body, Group, LaneRobot, number_of};
 use super::obstacle::Obstacle;
 use crate::edge::{Blocked, EdgeChecker, Obstruction, Patience};
-use crate::scene::Scene;
+use crate::scene::{Rules, Scene};
 use crate::space::Space;
 
 /// Checks motions of a robot among the bodies of a scene, several configurations at a time.
@@ -28,10 +28,11 @@ pub struct LaneChecker<'a> {
     obstacles: Vec<Obstacle>,
     /// The body of the scene that each obstacle belongs to.
     owners: Vec<BodyIdx>,
+    /// For each group of bodies, the obstacles that it can come near to, and how far it keeps from them: metres, negative where it
+    /// may be in them.
     near: Vec<Vec<(u32, f32)>>,
     /// The same one by one: what was hit last comes first, since what is hit once is often hit again.
     meetings: Vec<Meeting>,
-    margin: f64,
     patience: Patience,
     work: &'a mut LaneMemory,
     statistics: LaneStatistics,
@@ -82,8 +83,8 @@ const LOOK: f64 = 1.0 / 20.0;
 /// Stretches in which nothing moves farther than this, in metres, are left to the convex parts.
 const FINE: f64 = 8e-3;
 
-/// Distances are found up to this many times what a stretch needs: the stretches beside it then need none.
-const WIDE: f64 = 4.0;
+/// Distances are found to within this fraction: they only tell how long two things stay apart.
+const RELATIVE: f64 = 0.1;
 
 /// Bodies this close to each other count as touching, metres: conservative advancement would not get past them.
 const TOUCH: f64 = 2e-5;
@@ -102,10 +103,26 @@ impl<'a> LaneChecker<'a> {
         width: Width,
         work: &'a mut LaneMemory,
     ) -> Self {
+        Self::with_rules(robot, scene, space, &Rules { margin, ..Rules::default() }, width, work)
+    }
+
+    /// Motions under `rules`. What is held is what the robot was made to [hold](LaneRobot::holding), and links of the gripper are
+    /// those of its [hand](LaneRobot::with_hand), whatever the rules say of both.
+    pub fn with_rules(
+        robot: &'a LaneRobot,
+        scene: &'a Scene,
+        space: &'a Space,
+        rules: &Rules,
+        width: Width,
+        work: &'a mut LaneMemory,
+    ) -> Self {
         let mut obstacles = Vec::new();
         let mut owners = Vec::new();
         let root_from_world = scene.world_from_robot().inverse();
         for (body, root_from_body, geometry, parts) in scene.solids() {
+            if robot.held == Some(body) {
+                continue;
+            }
             let root_from_body = root_from_world * root_from_body;
             let primitives: Option<Vec<Obstacle>> = geometry
                 .iter()
@@ -116,7 +133,7 @@ impl<'a> LaneChecker<'a> {
             owners.extend(solids.iter().map(|_| body));
             obstacles.extend(solids);
         }
-        let near = near(robot, &obstacles, margin);
+        let near = near(robot, &obstacles, &owners, rules);
         let statistics = LaneStatistics::default();
         // What is farther out moves more and touches more often.
         let each = near.iter().enumerate().rev().flat_map(|(group, near)| {
@@ -132,7 +149,6 @@ impl<'a> LaneChecker<'a> {
             owners,
             near,
             meetings,
-            margin,
             patience: Patience::Thorough,
             work,
             statistics,
@@ -207,9 +223,9 @@ impl<'a> LaneChecker<'a> {
             if self.work.proven.iter().any(inside) {
                 continue;
             }
-            let gap = self.gap(from, middle, WIDE * half * speed, close);
+            let gap = self.gap(from, middle, close);
             self.statistics.distances += 1;
-            let known = gap.min(WIDE * half * speed) / speed;
+            let known = gap / speed;
             if gap > half * speed {
                 self.work.proven.push((middle - known, middle + known, close));
                 continue;
@@ -240,8 +256,8 @@ impl<'a> LaneChecker<'a> {
         }
     }
 
-    /// The distance of two things at a fraction of the motion, less the margin; infinite when it is more than `far`.
-    fn gap(&mut self, from: &[f64], fraction: f64, far: f64, close: Close) -> f64 {
+    /// How much nearer two things may come to each other from where they are at a fraction of the motion, at least.
+    fn gap(&mut self, from: &[f64], fraction: f64, close: Close) -> f64 {
         let robot = self.robot;
         let LaneMemory { values, difference, frames, .. } = &mut *self.work;
         // Often the next question is about the same state.
@@ -254,19 +270,23 @@ impl<'a> LaneChecker<'a> {
         let scene = self.scene;
         let link = |body: usize| {
             let body = &robot.bodies[body];
-            let parts = body.link.map(|link| scene.link_parts(link));
-            (frames[body.frame] * body.frame_from_body, parts.into_iter().flatten())
+            let of_link = body.link.map(|link| scene.link_parts(link));
+            let of_held = robot.held.filter(|_| body.link.is_none()).map(|held| scene.body_parts(held));
+            let parts = of_link.into_iter().flatten().chain(of_held.into_iter().flatten());
+            (frames[body.frame] * body.frame_from_body, parts)
         };
         let mut least = f64::INFINITY;
         match close {
             Close::Obstacle { body, obstacle } => {
                 let owner = self.owners[obstacle as usize];
                 let root_from_other = scene.world_from_robot().inv_mul(scene.world_from_body(owner));
+                let room = self.near[robot.bodies[body as usize].group].iter().find(|(i, _)| *i == obstacle);
+                let room = room.map_or(0.0, |(_, room)| f64::from(*room));
                 let (root_from_body, parts) = link(body as usize);
                 for part in parts {
                     for other in scene.body_parts(owner) {
-                        let gap = apart(part, &root_from_body, other, &root_from_other, far + self.margin);
-                        least = least.min(gap - self.margin);
+                        let near = nearer(part, &root_from_body, other, &root_from_other, room, least);
+                        least = least.min(near);
                     }
                 }
             }
@@ -275,7 +295,7 @@ impl<'a> LaneChecker<'a> {
                 let ((root_from_a, parts_a), (root_from_b, _)) = (link(pair.a), link(pair.b));
                 for part in parts_a {
                     for other in link(pair.b).1 {
-                        least = least.min(apart(part, &root_from_a, other, &root_from_b, far));
+                        least = least.min(nearer(part, &root_from_a, other, &root_from_b, 0.0, least));
                     }
                 }
             }
@@ -284,11 +304,12 @@ impl<'a> LaneChecker<'a> {
     }
 
     fn obstruction(&self, close: Close) -> Obstruction {
-        let body = |body: usize| self.robot.bodies[body].link.map_or(0, number_of);
+        let of_body = |body: BodyIdx| self.scene.links() + body.index();
+        let held = self.robot.held.map_or(0, of_body);
+        let body = |body: usize| self.robot.bodies[body].link.map_or(held, number_of);
         let (a, b) = match close {
             Close::Obstacle { body: own, obstacle } => {
-                let other = self.scene.links() + self.owners[obstacle as usize].index();
-                (body(own as usize), other)
+                (body(own as usize), of_body(self.owners[obstacle as usize]))
             }
             Close::Pair(pair) => {
                 let pair = &self.robot.pairs[pair as usize];
@@ -299,16 +320,41 @@ impl<'a> LaneChecker<'a> {
     }
 }
 
-fn apart(a: &ConvexPart, root_from_a: &Pose, b: &ConvexPart, root_from_b: &Pose, far: f64) -> f64 {
-    // To know that they are far apart takes less than to know how far.
-    if !within(a, root_from_a, b, root_from_b, far) {
+/// How much nearer two parts may come to each other that keep `room`, metres, at least; infinite when that is more than `least`
+/// in any case.
+fn nearer(
+    a: &ConvexPart,
+    root_from_a: &Pose,
+    b: &ConvexPart,
+    root_from_b: &Pose,
+    room: f64,
+    least: f64,
+) -> f64 {
+    let a_from_b = root_from_a.inv_mul(root_from_b);
+    let ((centre_a, radius_a), (centre_b, radius_b)) = (a.bounding_sphere(), b.bounding_sphere());
+    if (a_from_b * centre_b - centre_a).norm() - radius_a - radius_b - room > least {
         return f64::INFINITY;
     }
-    distance(a, root_from_a, b, root_from_b).distance
+    if let Some(apart) = separation(a, b, &a_from_b, RELATIVE)
+        && apart.gap - room > TOUCH
+    {
+        return apart.gap - room;
+    }
+    // Now it matters how far exactly.
+    let apart = distance(a, root_from_a, b, root_from_b).distance;
+    if apart > 0.0 || room >= 0.0 {
+        return apart - room;
+    }
+    -contact(a, root_from_a, b, root_from_b, 0.0).map_or(0.0, |found| found.depth) - room
 }
 
-/// For each group of bodies, the obstacles that it can come near to in any configuration.
-fn near(robot: &LaneRobot, obstacles: &[Obstacle], margin: f64) -> Vec<Vec<(u32, f32)>> {
+/// For each group of bodies, the obstacles that it can come near to in any configuration, and how far it keeps from them.
+fn near(
+    robot: &LaneRobot,
+    obstacles: &[Obstacle],
+    owners: &[BodyIdx],
+    rules: &Rules,
+) -> Vec<Vec<(u32, f32)>> {
     let within_reach = |body: &Body, obstacle: &Obstacle| {
         let Some(&(first, reach)) = body.chain.first() else { return false };
         // All of the body stays within its reach of the first joint that turns; sliding joints leave no fixed middle.
@@ -316,13 +362,25 @@ fn near(robot: &LaneRobot, obstacles: &[Obstacle], margin: f64) -> Vec<Vec<(u32,
         let middle = robot.steps[first].parent_from_joint.translation.vector;
         let (centre, radius) = obstacle.ball;
         let away = nalgebra::Vector3::from(centre) - middle;
-        !fixed || body.chain.len() < 2 || away.norm() <= reach + radius + margin + 1e-3
+        !fixed || body.chain.len() < 2 || away.norm() <= reach + radius + rules.margin + 1e-3
+    };
+    let keeps = |group: &Group, owner: BodyIdx| -> Option<f64> {
+        // Bodies of a group are of one kind.
+        let first = group.bodies[0];
+        if robot.bodies[first].link.is_none() {
+            return Some(rules.sink.map_or(rules.margin, |sink| -sink));
+        }
+        match robot.is_of_hand(first) && rules.target == Some(owner) {
+            true => rules.give.map(|give| -give),
+            false => Some(rules.margin),
+        }
     };
     let reach_of = |group: &Group| -> Vec<(u32, f32)> {
         let any =
             |obstacle: &Obstacle| group.bodies.iter().any(|&i| within_reach(&robot.bodies[i], obstacle));
-        let list = obstacles.iter().enumerate().filter(|(_, obstacle)| any(obstacle));
-        list.map(|(i, _)| (i as u32, margin as f32)).collect()
+        let each = obstacles.iter().zip(owners).enumerate();
+        let near = each.filter(|(_, (obstacle, _))| any(obstacle));
+        near.filter_map(|(i, (_, owner))| Some((i as u32, keeps(group, *owner)? as f32))).collect()
     };
     robot.groups.iter().map(reach_of).collect()
 }

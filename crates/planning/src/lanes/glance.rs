@@ -48,7 +48,7 @@ pub(super) struct View<'a> {
 pub(super) struct Meeting {
     pub(super) group: u32,
     pub(super) obstacle: u32,
-    /// How far apart the two have to be.
+    /// How far apart the two have to be; negative where they may be in each other, by so much.
     pub(super) room: f32,
 }
 
@@ -112,7 +112,7 @@ impl<S: Simd> Eye<'_, S> {
             for &Meeting { group, obstacle, room } in meetings {
                 let group = &robot.groups[group as usize];
                 let solid = &obstacles[obstacle as usize];
-                let slack = self.rounding + solid.pad + room;
+                let slack = self.rounding + solid.pad + room.max(0.0);
                 if group.bodies.len() > 1 {
                     let centre = self.frames.centre(group.ball, group.frame);
                     let outer = robot.spheres[group.ball].outer + slack;
@@ -135,7 +135,8 @@ impl<S: Simd> Eye<'_, S> {
                             continue;
                         }
                         let inner = sphere.inner + room - self.rounding;
-                        if sphere.inner > self.rounding && most.less_equal(self.splat(inner * inner)).any() {
+                        let tells = sphere.inner > self.rounding && room >= 0.0;
+                        if tells && most.less_equal(self.splat(inner * inner)).any() {
                             return Some(Close::Obstacle { body: i as u32, obstacle });
                         }
                         at += 1;

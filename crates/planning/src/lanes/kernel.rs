@@ -28,7 +28,8 @@ pub(super) struct Motion {
 #[derive(Debug)]
 pub(super) struct Around<'a> {
     pub(super) obstacles: &'a [Obstacle],
-    /// For each group of bodies, the obstacles that it can come near to, with the room that it keeps from them.
+    /// For each group of bodies, the obstacles that it can come near to, with the room that it keeps from them: negative where it
+    /// may be in them, by so much.
     pub(super) near: &'a [Vec<(u32, f32)>],
 }
 
@@ -202,7 +203,8 @@ impl<S: Simd> Kernel<'_, S> {
             let travel = Lanes::new(self.simd, self.travel[i]);
             for &(obstacle, room) in &around.near[body.group] {
                 let solid = &around.obstacles[obstacle as usize];
-                let slack = self.rounding + solid.pad + room;
+                // How deep two parts are in each other, spheres do not tell: they only prove them apart.
+                let slack = self.rounding + solid.pad + room.max(0.0);
                 let reach = travel + self.splat(slack);
                 let mut at = body.spheres.start;
                 let close = Close::Obstacle { body: i as u32, obstacle };
@@ -226,7 +228,7 @@ impl<S: Simd> Kernel<'_, S> {
                         continue;
                     }
                     let inner = sphere.inner + room - self.rounding;
-                    if sphere.inner > self.rounding {
+                    if sphere.inner > self.rounding && room >= 0.0 {
                         let hit = most.less_equal(self.splat(inner * inner));
                         if hit.any() {
                             return Some((hit.first(), close));

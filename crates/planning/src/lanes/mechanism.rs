@@ -4,12 +4,13 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use nalgebra::{Point3, Rotation3, Unit, UnitQuaternion, Vector3};
-use robotc_core::geom::{ConvexParts, SphereCover};
+use robotc_core::geom::{ConvexPart, ConvexParts, SphereCover};
 use robotc_core::ids::Idx;
 use robotc_core::model::{Drive, JointMotion};
-use robotc_core::{Configuration, DofIdx, JointIdx, Kinematics, LinkIdx, Pose, TypedVec};
+use robotc_core::{BodyIdx, Configuration, DofIdx, JointIdx, Kinematics, LinkIdx, Pose, TypedVec};
 
 use super::apart::Apart;
+use crate::scene::{Grip, Scene};
 
 /// A robot prepared for vectorised checks of motions of some of its degrees of freedom.
 #[derive(Debug, Clone)]
@@ -23,6 +24,12 @@ pub struct LaneRobot {
     pub(super) spheres: Vec<Sphere>,
     /// For each link, the frame that carries it and where it is in that frame.
     pub(super) carriers: TypedVec<LinkIdx, (usize, Pose)>,
+    /// Links of the hand, ascending: they may be asked to touch what the others may not.
+    hand: Vec<LinkIdx>,
+    /// The body of the scene that the robot holds.
+    pub(super) held: Option<BodyIdx>,
+    /// For each step, how far it slides at most.
+    extents: Vec<f64>,
     /// How far rounding can move a computed point at most, metres.
     pub(super) rounding: f64,
 }
@@ -45,7 +52,7 @@ pub(super) struct Step {
     pub(super) shift: [f32; 3],
 }
 
-/// All bodies on one frame.
+/// All bodies on one frame that may touch the same.
 #[derive(Debug, Clone)]
 pub(super) struct Group {
     pub(super) frame: usize,
@@ -78,7 +85,7 @@ pub(super) struct Pair {
     /// Steps that move one against the other, with how far they bring points of the two together per unit at most.
     pub(super) closing: Vec<(usize, f64)>,
     /// Where the two are known to stay apart.
-    pub(super) apart: Option<Apart>,
+    pub(super) apart: Option<Arc<Apart>>,
 }
 
 /// A node of a sphere tree in single precision.
@@ -127,6 +134,7 @@ impl LaneRobot {
                 }
             };
         }
+        let extents = extents(kinematics, &steps, dofs);
         let mut robot = Self {
             steps,
             bodies: Vec::new(),
@@ -134,46 +142,86 @@ impl LaneRobot {
             groups: Vec::new(),
             spheres: Vec::new(),
             carriers,
+            hand: Vec::new(),
+            held: None,
+            extents,
             rounding: 0.0,
         };
         let mut body_of: TypedVec<LinkIdx, Option<usize>> = model.links().iter().map(|_| None).collect();
         for link in model.links().indices() {
             let (frame, frame_from_link) = robot.carriers[link];
-            let compared = self_pairs.iter().any(|&(a, b)| a == link || b == link);
-            if !covers[link].nodes().is_empty() && (frame > 0 || compared) {
-                let extents = extents(kinematics, &robot.steps, dofs);
-                let body =
-                    robot.add(Some(link), frame, frame_from_link, &parts[link], &covers[link], &extents);
+            // Links that stand still too: something that is held may come near them.
+            if !covers[link].nodes().is_empty() {
+                let corners = corners(parts[link].iter());
+                let body = robot.add(Some(link), frame, frame_from_link, &corners, &covers[link]);
                 body_of[link] = Some(body);
             }
         }
-        let extents = extents(kinematics, &robot.steps, dofs);
         for &(link_a, link_b) in self_pairs {
             if let (Some(a), Some(b)) = (body_of[link_a], body_of[link_b]) {
-                let pair = robot.pair(a, b, [&parts[link_a], &parts[link_b]], &extents);
-                robot.pairs.extend(pair);
+                let corners = [corners(parts[link_a].iter()), corners(parts[link_b].iter())];
+                robot.pairs.extend(robot.pair(a, b, [&corners[0], &corners[1]]));
             }
         }
         let limits = kinematics.model().dofs();
         let ranges: Vec<(f64, f64)> = dofs.iter().map(|&dof| limits[dof].sampling_range()).collect();
         for i in 0..robot.pairs.len() {
-            robot.pairs[i].apart = Apart::of(&robot, &robot.pairs[i], parts, &ranges);
+            robot.pairs[i].apart = Apart::of(&robot, &robot.pairs[i], parts, &ranges).map(Arc::new);
         }
         robot.group();
         robot.rounding = robot.rounding();
         robot
     }
 
-    /// Adds a body that moves with a frame; returns its position.
-    pub(super) fn add(
+    /// The same robot, of which `links` may be allowed to touch what the others may not.
+    pub fn with_hand(mut self, links: &[LinkIdx]) -> Self {
+        self.hand = links.to_vec();
+        self.hand.sort_unstable();
+        self.group();
+        self
+    }
+
+    /// The same robot with a body of `scene` in its hand, which `cover` covers. Links for which `beside` is true are compared with
+    /// it, except those that it never moves against.
+    pub fn holding(
+        &self,
+        scene: &Scene,
+        grip: &Grip,
+        cover: &SphereCover,
+        beside: impl Fn(LinkIdx) -> bool,
+    ) -> Self {
+        let mut robot = self.clone();
+        let (frame, frame_from_link) = robot.carriers[grip.link];
+        let of_held = corners(scene.body_parts(grip.body));
+        let held = robot.add(None, frame, frame_from_link * grip.link_from_body, &of_held, cover);
+        robot.held = Some(grip.body);
+        for other in 0..held {
+            if let Some(link) = robot.bodies[other].link.filter(|link| beside(*link)) {
+                let of_link = corners(scene.link_parts(link));
+                robot.pairs.extend(robot.pair(other, held, [&of_link, &of_held]));
+            }
+        }
+        robot.group();
+        robot.rounding = robot.rounding();
+        robot
+    }
+
+    /// Whether a link belongs to the hand.
+    pub(super) fn is_of_hand(&self, body: usize) -> bool {
+        self.bodies[body].link.is_some_and(|link| self.hand.binary_search(&link).is_ok())
+    }
+
+    /// Adds a body with these corners that moves with a frame; returns its position.
+    fn add(
         &mut self,
         link: Option<LinkIdx>,
         frame: usize,
         frame_from_body: Pose,
-        parts: &ConvexParts,
+        corners: &[Point3<f64>],
         cover: &SphereCover,
-        extents: &[f64],
     ) -> usize {
+        // Spheres around groups come last, and are found again.
+        self.ungroup();
         let first = self.spheres.len();
         for node in cover.nodes() {
             let centre = frame_from_body * node.centre;
@@ -184,17 +232,29 @@ impl LaneRobot {
                 next: first as u32 + node.next,
             });
         }
-        let chain = self.chain(frame, &frame_from_body, parts, extents);
+        let chain = self.chain(frame, &frame_from_body, corners);
         let spheres = first..self.spheres.len();
         self.bodies.push(Body { link, frame, group: 0, frame_from_body, spheres, chain });
         self.bodies.len() - 1
     }
 
-    /// Finds bodies that move as one, and puts pairs of bodies of the same groups one after another.
+    fn ungroup(&mut self) {
+        self.spheres.truncate(self.spheres.len() - self.groups.len());
+        self.groups.clear();
+    }
+
+    /// Finds bodies that move as one and may touch the same, and puts pairs of bodies of the same groups one after another.
     fn group(&mut self) {
-        for frame in 0..=self.steps.len() {
-            let of_frame = |&i: &usize| self.bodies[i].frame == frame;
-            let bodies: Vec<usize> = (0..self.bodies.len()).filter(of_frame).collect();
+        self.ungroup();
+        // 0 for links of the arm, 1 for those of the hand, 2 for what is held.
+        let class = |robot: &Self, i: usize| match robot.bodies[i].link {
+            Some(_) => usize::from(robot.is_of_hand(i)),
+            None => 2,
+        };
+        for key in (0..=self.steps.len()).flat_map(|frame| [0, 1, 2].map(|class| (frame, class))) {
+            let of_key = |&i: &usize| (self.bodies[i].frame, class(self, i)) == key;
+            let bodies: Vec<usize> = (0..self.bodies.len()).filter(of_key).collect();
+            let frame = key.0;
             let balls: Vec<Sphere> =
                 bodies.iter().map(|&i| self.spheres[self.bodies[i].spheres.start]).collect();
             if let Some(around) = around(&balls) {
@@ -209,14 +269,8 @@ impl LaneRobot {
 
     /// How far points of a body are from the axes that move it, at most and in any configuration: no farther than the bones
     /// between are long.
-    fn chain(
-        &self,
-        frame: usize,
-        frame_from_body: &Pose,
-        parts: &ConvexParts,
-        extents: &[f64],
-    ) -> Vec<(usize, f64)> {
-        let points: Vec<Point3<f64>> = parts.points().map(|p| frame_from_body * p).collect();
+    fn chain(&self, frame: usize, frame_from_body: &Pose, corners: &[Point3<f64>]) -> Vec<(usize, f64)> {
+        let points: Vec<Point3<f64>> = corners.iter().map(|p| frame_from_body * p).collect();
         let mut chain = Vec::new();
         let mut at = frame;
         // From the origin of the frame reached so far.
@@ -226,7 +280,7 @@ impl LaneRobot {
             let step = &self.steps[at - 1];
             chain.push((at - 1, if step.slides { 1.0 } else { beside }));
             if step.slides {
-                reach += extents[at - 1];
+                reach += self.extents[at - 1];
             }
             reach += step.parent_from_joint.translation.vector.norm();
             beside = reach;
@@ -240,14 +294,14 @@ impl LaneRobot {
     ///
     /// What a step does to the distance of the two can be seen from either side: it moves the one, or the other the other
     /// way. So the smaller of their distances from its axis bounds how fast they come together.
-    fn pair(&self, a: usize, b: usize, parts: [&ConvexParts; 2], extents: &[f64]) -> Option<Pair> {
+    fn pair(&self, a: usize, b: usize, corners: [&[Point3<f64>]; 2]) -> Option<Pair> {
         let (chain_a, chain_b) = (&self.bodies[a].chain, &self.bodies[b].chain);
         let only = |own: &[(usize, f64)], other: &[(usize, f64)]| -> Vec<(usize, f64)> {
             own.iter().copied().filter(|(step, _)| other.iter().all(|(s, _)| s != step)).collect()
         };
         let (own, other) = (only(chain_a, chain_b), only(chain_b, chain_a));
-        let mut closing = self.branch_seen_from(b, parts[1], &own, extents);
-        closing.extend(self.branch_seen_from(a, parts[0], &other, extents));
+        let mut closing = self.branch_seen_from(b, corners[1], &own);
+        closing.extend(self.branch_seen_from(a, corners[0], &other));
         (!closing.is_empty()).then_some(Pair { a, b, closing, apart: None })
     }
 
@@ -256,14 +310,14 @@ impl LaneRobot {
     fn branch_seen_from(
         &self,
         body: usize,
-        parts: &ConvexParts,
+        corners: &[Point3<f64>],
         branch: &[(usize, f64)],
-        extents: &[f64],
     ) -> Vec<(usize, f64)> {
+        let extents = &self.extents;
         let Some(&(first, _)) = branch.first() else { return vec![] };
         let Body { frame, frame_from_body, .. } = self.bodies[body];
         let root = self.steps[first].parent;
-        let points = || parts.points().map(|p| frame_from_body * p);
+        let points = || corners.iter().map(|p| frame_from_body * p);
         // From the origin of the frame reached so far: first towards the root, then out along the branch.
         let mut reach = points().map(|p| p.coords.norm()).fold(0.0, f64::max);
         let mut at = frame;
@@ -381,8 +435,13 @@ fn joint_pose(kinematics: &Kinematics, joint: JointIdx) -> Pose {
     }
 }
 
+/// Corners of all parts.
+fn corners<'p>(parts: impl Iterator<Item = &'p ConvexPart>) -> Vec<Point3<f64>> {
+    parts.flat_map(|part| part.points().iter().copied()).collect()
+}
+
 /// For each step, how far it slides at most.
-pub(super) fn extents(kinematics: &Kinematics, steps: &[Step], dofs: &[DofIdx]) -> Vec<f64> {
+fn extents(kinematics: &Kinematics, steps: &[Step], dofs: &[DofIdx]) -> Vec<f64> {
     let limits = kinematics.model().dofs();
     let extent = |step: &Step| {
         let dof = &limits[dofs[step.column]];

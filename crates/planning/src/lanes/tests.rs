@@ -4,14 +4,16 @@ use std::sync::Arc;
 
 use nalgebra::{Point3, Translation3};
 use robotc_core::geom::{ConvexParts, CoverOptions, DecomposeOptions, SphereCover, parts_of};
+use robotc_core::ids::Idx;
 use robotc_core::model::{Geometry, Origin, Shape, TriMesh};
 use robotc_core::rng::Rng;
 use robotc_core::{BodyIdx, Configuration, Kinematics, LinkIdx, Pose, Robot, Seed, TypedVec, World};
 
 use super::{LaneChecker, LaneMemory, LaneRobot, Width};
 use crate::certify::certify_path;
-use crate::edge::{EdgeChecker, Patience};
-use crate::scene::{RobotChecker, Rules, Scene};
+use crate::edge::{EdgeChecker, Obstruction, Patience, bisect_edge};
+use crate::manipulation::gripper_links;
+use crate::scene::{Grip, RobotChecker, Rules, Scene};
 use crate::space::{Axis, Space};
 use crate::testbed;
 
@@ -32,6 +34,10 @@ fn wedge() -> Shape {
     let faces = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     let mesh = Arc::new(TriMesh { vertices: vertices.to_vec(), faces });
     Shape::Mesh { mesh, uri: "wedge".into() }
+}
+
+fn block() -> Arc<Vec<Geometry>> {
+    solid(Shape::Box { size: [0.2, 0.06, 0.04] })
 }
 
 type Covers = TypedVec<LinkIdx, Arc<SphereCover>>;
@@ -70,6 +76,10 @@ fn bench(rail: bool, covers: &Covers, rng: &mut Rng) -> Bench {
         world.add(&format!("body {i}"), geometry.clone(), Pose::from_parts(at, turn));
         bodies.push(Arc::new(parts_of(&geometry, &options).unwrap()));
     }
+    // Something to hold; where it is put is out of reach.
+    let block = block();
+    world.add("block", block.clone(), Pose::translation(9.0, 0.0, 0.0));
+    bodies.push(Arc::new(parts_of(&block, &options).unwrap()));
     let parts: TypedVec<LinkIdx, Arc<ConvexParts>> =
         model.links().iter().map(|l| Arc::new(parts_of(&l.collisions, &options).unwrap())).collect();
     let links: Vec<LinkIdx> = model.links().indices().collect();
@@ -197,4 +207,125 @@ fn what_a_first_look_blocks_is_blocked_with_any_number_of_lanes() {
         blocked += usize::from(!looks[0]);
     }
     assert!(passed > 30 && blocked > 100 && misled < blocked / 4, "{passed} {blocked} {misled}");
+}
+
+#[test]
+fn what_is_held_and_what_may_be_touched_is_as_exact_geometry_says() {
+    let (covers, mut rng) = (covers(), Seed::new(25).rng());
+    let parts = parts_of(&block(), &DecomposeOptions::default()).unwrap();
+    let cover = SphereCover::of(&parts, &CoverOptions { overshoot: 0.1, least: 0.0 });
+    let (mut free, mut touching, mut allowed, mut free_edges) = (0, 0, 0, 0);
+    for trial in 0..6 {
+        let mut bench = bench(trial % 2 == 0, &covers, &mut rng);
+        let hand = gripper_links(&bench.robot, 0);
+        // The target is where the fingers are in some state.
+        let (target, at_target) = (BodyIdx::new(5), bench.space.sample(&mut rng));
+        let mut q = bench.world.q().clone();
+        q.set(&bench.robot.arms[0].dofs, &at_target);
+        let palm = bench.robot.grippers[0].palm;
+        let world_from_palm =
+            bench.scene.world_from_robot() * bench.scene.kinematics().root_from_link(&q, palm);
+        bench.scene.place(target, world_from_palm * Pose::translation(0.2, 0.0, 0.0));
+        let robot = &bench.robot;
+        let grip = Grip {
+            body: BodyIdx::new(6),
+            link: palm,
+            link_from_body: Pose::from_parts(Translation3::new(0.15, 0.0, 0.02), rng.rotation()),
+        };
+        let holds = trial % 3 > 0;
+        let rules = Rules {
+            margin: [0.0, 0.01][trial % 2],
+            held: holds.then(|| grip.clone()),
+            gripper: hand.clone(),
+            target: Some(target),
+            give: (trial > 2).then_some(0.02),
+            sink: (trial % 3 == 2).then_some(0.03),
+        };
+        let strict = Rules { target: None, sink: None, ..rules.clone() };
+        let mut lanes = bench.lanes.clone().with_hand(&hand);
+        if holds {
+            lanes = lanes.holding(&bench.scene, &grip, &cover, |link| hand.binary_search(&link).is_err());
+        }
+        let (dofs, q) = (&robot.arms[0].dofs, bench.world.q());
+        let exact =
+            |rules: &Rules| RobotChecker::new(&bench.scene, &bench.space, dofs, q, rules.clone(), 0.01);
+        let (mut by_rules, mut strictly) = (exact(&rules), exact(&strict));
+        let mut memories: Vec<LaneMemory> = Width::all().iter().map(|_| LaneMemory::default()).collect();
+        let each = Width::all().into_iter().zip(&mut memories);
+        let mut checkers: Vec<_> = each
+            .map(|(width, memory)| {
+                LaneChecker::with_rules(&lanes, &bench.scene, &bench.space, &rules, width, memory)
+            })
+            .collect();
+        for draw in 0..200 {
+            let from = match draw % 2 {
+                0 => bench.space.sample(&mut rng),
+                _ => bench.space.sample_near(&at_target, rng.range(0.0, 0.3), &mut rng),
+            };
+            let expected = by_rules.is_free(&from);
+            for checker in &mut checkers {
+                let found = checker.state(&from);
+                assert_eq!(expected.is_ok(), found.is_ok(), "{trial} {from:?}: {expected:?} {found:?}");
+            }
+            if expected.is_err() {
+                touching += 1;
+                continue;
+            }
+            free += 1;
+            allowed += usize::from(strictly.is_free(&from).is_err());
+            let to = bench.space.sample_near(&from, rng.range(0.05, 0.6), &mut rng);
+            let found: Vec<bool> = checkers.iter_mut().map(|c| c.edge(&from, &to).is_ok()).collect();
+            assert!(found.iter().all(|free| *free == found[0]), "{from:?} {to:?} {found:?}");
+            if found[0] {
+                free_edges += 1;
+                for i in 0..=50 {
+                    let q = bench.space.interpolate(&from, &to, f64::from(i) / 50.0);
+                    assert!(by_rules.is_free(&q).is_ok(), "{trial} {from:?} {to:?} {i}");
+                }
+            }
+        }
+    }
+    assert!(free > 200 && touching > 200 && allowed > 5, "{free} {touching} {allowed}");
+    assert!(free_edges > 100, "{free_edges}");
+}
+
+#[test]
+fn exact_edges_are_free_between_the_states_that_were_looked_at() {
+    let (covers, mut rng) = (covers(), Seed::new(26).rng());
+    let (mut free, mut blocked) = (0, 0);
+    for trial in 0..3 {
+        let bench = bench(trial % 2 == 0, &covers, &mut rng);
+        let (dofs, q) = (&bench.robot.arms[0].dofs, bench.world.q());
+        let checker = |margin, resolution| {
+            let rules = Rules { margin, ..Rules::default() };
+            RobotChecker::new(&bench.scene, &bench.space, dofs, q, rules, resolution)
+                .without_self_collisions()
+        };
+        // With a margin of half the resolution, states in between are free without a margin.
+        let (mut pairwise, mut every, mut bare) =
+            (checker(0.01, 0.02), checker(0.01, 0.001), checker(0.0, 0.02));
+        for _ in 0..60 {
+            let from = bench.space.sample(&mut rng);
+            let to = bench.space.sample_near(&from, rng.range(0.05, 1.0), &mut rng);
+            if pairwise.is_free(&from).is_err() {
+                continue;
+            }
+            match pairwise.edge(&from, &to) {
+                Ok(()) => {
+                    free += 1;
+                    for i in 0..=200 {
+                        let q = bench.space.interpolate(&from, &to, f64::from(i) / 200.0);
+                        assert!(bare.is_free(&q).is_ok(), "{from:?} {to:?} {i}");
+                    }
+                }
+                Err(found) => {
+                    blocked += 1;
+                    let q = bench.space.interpolate(&from, &to, found.fraction);
+                    assert_eq!(pairwise.is_free(&q).is_err(), found.by != Obstruction::Bounds);
+                    assert!(bisect_edge(&mut every, &from, &to).is_err());
+                }
+            }
+        }
+    }
+    assert!(free > 50 && blocked > 10, "{free} {blocked}");
 }

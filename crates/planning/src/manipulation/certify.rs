@@ -295,8 +295,8 @@ fn replay_space(problem: &Manipulation<'_>, trajectory: &Trajectory) -> Space {
     Space::new(trajectory.dofs().iter().map(axis).collect())
 }
 
-/// Times and states of a motion so that no point travels more than the resolution in between; those at `times` are among
-/// them.
+/// Times and states of a motion so that no point travels more than the resolution in between: the first, the last, and as few
+/// as that takes. Travel is that from one of `times` to the next.
 fn dense_states<C: EdgeChecker>(
     checker: &C,
     times: &[f64],
@@ -305,16 +305,36 @@ fn dense_states<C: EdgeChecker>(
 ) -> Vec<(f64, Vec<f64>)> {
     let mut states = vec![(0.0, sample(0.0))];
     let mut from = states[0].1.clone();
+    // Travelled since the last of them.
+    let mut since = 0.0;
     for t in times.windows(2) {
         let to = sample(t[1]);
         let difference: Vec<f64> = from.iter().zip(&to).map(|(a, b)| b - a).collect();
-        let pieces = (checker.travel(&difference) / resolution).ceil().max(1.0) as usize;
+        let travel = checker.travel(&difference);
+        if since + travel <= resolution {
+            since += travel;
+            from = to;
+            continue;
+        }
+        if since > 0.0 {
+            states.push((t[0], from));
+        }
+        if travel <= resolution {
+            since = travel;
+            from = to;
+            continue;
+        }
+        since = 0.0;
+        let pieces = (travel / resolution).ceil() as usize;
         for i in 1..pieces {
             let time = t[0] + (t[1] - t[0]) * i as f64 / pieces as f64;
             states.push((time, sample(time)));
         }
         states.push((t[1], to.clone()));
         from = to;
+    }
+    if since > 0.0 {
+        states.push((times[times.len() - 1], from));
     }
     states
 }

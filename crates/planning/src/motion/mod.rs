@@ -4,6 +4,7 @@
 //! [`LaneChecker`](crate::LaneChecker) it is made for microseconds. Goals that have to be found first, and constraints, are
 //! the business of [`rrt`](crate::rrt).
 
+mod race;
 mod search;
 mod shorten;
 mod tree;
@@ -15,6 +16,7 @@ use robotc_core::Seed;
 use crate::budget::{Budget, Interrupt};
 use crate::edge::{EdgeChecker, Obstruction, Patience};
 
+pub use race::race_motion;
 pub use search::SearchOptions;
 pub use shorten::ShortenOptions;
 

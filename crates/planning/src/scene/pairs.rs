@@ -19,6 +19,8 @@ pub(super) struct Pairs {
     list: Vec<Pair>,
     /// For each thing that moves, or moves against another, metres for each unit of each degree of freedom; flat.
     rows: Vec<f64>,
+    /// The same by degree of freedom.
+    columns: Vec<f64>,
     dofs: usize,
     body_from_robot: TypedVec<BodyIdx, Pose>,
 }
@@ -62,8 +64,13 @@ impl Pairs {
         let mut pairs = Self {
             list: Vec::new(),
             rows: Vec::new(),
+            columns: Vec::new(),
             dofs: dofs.len(),
-            body_from_robot: scene.bodies.iter().map(|b| b.body_from_world * scene.world_from_robot).collect(),
+            body_from_robot: scene
+                .bodies
+                .iter()
+                .map(|b| b.body_from_world * scene.world_from_robot)
+                .collect(),
         };
         let bodies = || scene.bodies.enumerate().filter(|(_, body)| !body.shape.is_empty()).map(|(b, _)| b);
         let moving = known.links.enumerate().filter(|(_, row)| row.iter().any(|r| *r > 0.0));
@@ -81,9 +88,10 @@ impl Pairs {
             let others = bodies().filter_map(|body| Some((Other::Body(body), keeps(body)?)));
             pairs.add(Mover::Link(link), row, others);
         }
-        let of_held = rules.held.as_ref().map(|grip| {
-            (grip.body, known.of_held(scene, grip, &rules.gripper, &mut known.bounds.clone()))
-        });
+        let of_held = rules
+            .held
+            .as_ref()
+            .map(|grip| (grip.body, known.of_held(scene, grip, &rules.gripper, &mut known.bounds.clone())));
         if let Some((body, (row, _))) = &of_held {
             let keeps = rules.sink.map_or(Keeps::Margin(rules.margin), Keeps::Depth);
             let others = bodies().filter(|other| other != body).map(|other| (Other::Body(other), keeps));
@@ -95,6 +103,8 @@ impl Pairs {
         for (link, row) in of_held.iter().flat_map(|(_, (_, beside))| beside) {
             pairs.add(Mover::Held, row, [(Other::Link(*link), Keeps::Margin(0.0))]);
         }
+        let column = |dof: usize| pairs.rows.iter().skip(dof).step_by(dofs.len()).copied();
+        pairs.columns = (0..dofs.len()).flat_map(column).collect();
         pairs
     }
 
@@ -125,9 +135,12 @@ impl Pairs {
 
     /// For each row, how far the motion by `difference` brings things together at most, metres.
     pub(super) fn travels(&self, difference: &[f64], travels: &mut Vec<f64>) {
+        let rows = self.columns.len() / self.dofs.max(1);
         travels.clear();
-        let of = |row: &[f64]| row.iter().zip(difference).map(|(r, d)| r * d.abs()).sum::<f64>();
-        travels.extend(self.rows.chunks_exact(self.dofs.max(1)).map(of));
+        travels.resize(rows, 0.0);
+        for (column, d) in self.columns.chunks_exact(rows.max(1)).zip(difference) {
+            travels.iter_mut().zip(column).for_each(|(travel, each)| *travel += each * d.abs());
+        }
     }
 
     /// How much nearer the two of a pair may come to each other from where they are: at least this. More than `far` is not

@@ -91,10 +91,11 @@ impl Rows {
         let radius = scene.bodies[grip.body].shape.radius_about_origin() + offset;
         let held = bounds.add(&scene.kinematics, grip.link, radius);
         let shaped = self.links.enumerate().filter(|(link, _)| !scene.links[*link].is_empty());
-        let beside = shaped.filter(|(link, _)| gripper.binary_search(link).is_err()).filter_map(|(link, row)| {
-            let row = self.relative((link, row), (grip.link, &held));
-            row.iter().any(|r| *r > 0.0).then_some((link, row))
-        });
+        let beside =
+            shaped.filter(|(link, _)| gripper.binary_search(link).is_err()).filter_map(|(link, row)| {
+                let row = self.relative((link, row), (grip.link, &held));
+                row.iter().any(|r| *r > 0.0).then_some((link, row))
+            });
         let beside = beside.collect();
         (held, beside)
     }

@@ -1,0 +1,125 @@
+//! Several searches for the same motion at once.
+//!
+//! Search times have a heavy tail: of several searches with different seeds, the first to arrive is rarely slow. Which of them
+//! counts is decided by iterations and then by number, never by the clock, so that the path is the same with any number of
+//! threads.
+
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use robotc_core::Seed;
+
+use super::{MotionFailure, MotionPlan, SearchOptions, find_motion};
+use crate::budget::{Budget, Interrupt};
+use crate::edge::EdgeChecker;
+
+/// Finds a path from `start` to `goal` by `racers` searches, each with a stream of `seed`; the path of the one that takes the
+/// fewest iterations, the first of equals. A search ends when another one has arrived in fewer.
+///
+/// There are as many threads as `checkers`, all of the same robot and world. `interrupt` is asked by all searches in every
+/// iteration.
+pub fn race_motion<C: EdgeChecker + Send>(
+    checkers: &mut [C],
+    racers: u32,
+    start: &[f64],
+    goal: &[f64],
+    options: &SearchOptions,
+    interrupt: &(dyn Fn() -> Option<Interrupt> + Sync),
+    seed: Seed,
+) -> Result<MotionPlan, MotionFailure> {
+    let next = AtomicUsize::new(0);
+    let fewest = AtomicU32::new(u32::MAX);
+    let arrived = Mutex::new(None);
+    let failed = Mutex::new(None);
+    let run = |checker: &mut C| loop {
+        let racer = next.fetch_add(1, Ordering::Relaxed);
+        if racer >= racers.max(1) as usize {
+            return;
+        }
+        let iterations = std::cell::Cell::new(0);
+        let overtaken = || iterations.get() > fewest.load(Ordering::Relaxed);
+        let stop = || {
+            iterations.set(iterations.get() + 1);
+            if overtaken() { Some(Interrupt::Cancelled) } else { interrupt() }
+        };
+        let outcome = find_motion(checker, start, goal, options, &Budget::new(&stop), seed.at(racer as u64));
+        match outcome {
+            Ok(found) => {
+                fewest.fetch_min(found.iterations, Ordering::Relaxed);
+                keep_first(&arrived, (found.iterations, racer), found);
+            }
+            Err(_) if overtaken() => {}
+            Err(failure) => keep_first(&failed, (0, racer), failure),
+        }
+    };
+    std::thread::scope(|scope| {
+        let (first, others) = checkers.split_first_mut().expect("a race has a checker");
+        for checker in others {
+            scope.spawn(|| run(checker));
+        }
+        run(first);
+    });
+    match (first_of(arrived), first_of(failed)) {
+        (Some(found), _) => Ok(found),
+        (None, Some(failure)) => Err(failure),
+        (None, None) => unreachable!("a search is overtaken only by one that arrived"),
+    }
+}
+
+/// Keeps what comes first in an order.
+fn keep_first<T>(kept: &Mutex<Option<((u32, usize), T)>>, order: (u32, usize), value: T) {
+    let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+    if kept.as_ref().is_none_or(|(before, _)| order < *before) {
+        *kept = Some((order, value));
+    }
+}
+
+fn first_of<T>(kept: Mutex<Option<((u32, usize), T)>>) -> Option<T> {
+    kept.into_inner().unwrap_or_else(PoisonError::into_inner).map(|(_, value)| value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::edge::{Obstruction, walk_path};
+    use crate::toy::Toy;
+
+    fn toys(count: usize) -> Vec<Toy> {
+        let padded = || {
+            let mut toy = Toy::wall(0.05);
+            toy.padding = 0.025;
+            toy
+        };
+        (0..count).map(|_| padded()).collect()
+    }
+
+    fn race(threads: usize, racers: u32, goal: [f64; 2], seed: u64) -> Result<MotionPlan, MotionFailure> {
+        let options = SearchOptions { max_iterations: 3000, ..SearchOptions::default() };
+        race_motion(&mut toys(threads), racers, &[1.0, 1.0], &goal, &options, &|| None, Seed::new(seed))
+    }
+
+    #[test]
+    fn the_path_is_the_same_with_any_number_of_threads_and_takes_the_fewest_iterations() {
+        let mut sooner = 0;
+        for seed in 0..20 {
+            let found = race(1, 4, [9.0, 1.0], seed).unwrap();
+            for threads in [2, 3, 6] {
+                assert_eq!(race(threads, 4, [9.0, 1.0], seed).unwrap(), found);
+            }
+            walk_path(&mut Toy::wall(0.01), &found.path).unwrap();
+            let alone = race(2, 1, [9.0, 1.0], seed).unwrap();
+            assert!(found.iterations <= alone.iterations);
+            sooner += usize::from(found.iterations < alone.iterations);
+        }
+        assert!(sooner > 10, "{sooner}");
+    }
+
+    #[test]
+    fn a_race_that_nobody_can_win_says_why() {
+        let covered = race(2, 3, [4.5, 1.0], 1);
+        assert_eq!(covered, Err(MotionFailure::Goal(Obstruction::Contact(0))));
+        let (options, spent) = (SearchOptions::default(), || Some(Interrupt::TimeUp));
+        let stopped = race_motion(&mut toys(2), 2, &[1.0; 2], &[9.0, 1.0], &options, &spent, Seed::new(1));
+        assert_eq!(stopped, Err(MotionFailure::Interrupted(Interrupt::TimeUp, 0)));
+    }
+}
