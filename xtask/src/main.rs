@@ -2,6 +2,7 @@
 
 mod assets;
 mod browser;
+mod depots;
 mod docs;
 mod fuzz;
 mod ik_bench;
@@ -20,6 +21,7 @@ type Task = (&'static str, &'static str, fn(&[String]) -> anyhow::Result<()>);
 
 const TASKS: &[Task] = &[
     ("assets", "write the geometry in specs/, or --check it", assets::run),
+    ("depots", "build through buckets and databases, workers being killed: [TRIALS]", depots::run),
     ("fuzz", "fuzz the readers: [TARGET...] [--seconds N]", fuzz::run),
     ("ik-bench", "time generated solvers beside published ones: [POSES]", ik_bench::run),
     ("ik-zoo", "inverse kinematics of every arm of a folder: [FOLDER] [POSES]", ik_zoo::run),

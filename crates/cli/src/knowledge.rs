@@ -1,14 +1,18 @@
 //! The knowledge base as commands use it: where it is, and compiling into it with progress shown.
 
 use std::collections::BTreeMap;
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
 use clap::Args;
+use robotc_kb::depot::{self, Depot, DepotError, TransferError};
 use robotc_kb::explain::Reason;
-use robotc_kb::{CompileReport, Event, Graph, Observer, Outcome as NodeOutcome, Project, Store, StoreError};
+use robotc_kb::{
+    CompileReport, ContentHash, Event, Graph, Observer, Outcome as NodeOutcome, Project, Store, StoreError,
+};
 
 use crate::output::{self, Failure, Outcome};
 use crate::progress::Progress;
@@ -16,24 +20,49 @@ use crate::progress::Progress;
 /// Where the knowledge base is.
 #[derive(Args, Clone)]
 pub(crate) struct StoreArgs {
-    /// Folder of the knowledge base [default: $ROBOTC_STORE, or robotc in the user's cache folder]
-    #[arg(long, value_name = "DIR", global = true)]
+    /// Knowledge base: a folder, or the address of one that is shared [default: $ROBOTC_STORE, or robotc in the user's cache
+    /// folder]
+    #[arg(long, value_name = "WHERE", global = true)]
     store: Option<PathBuf>,
 }
 
 impl StoreArgs {
     /// Opens the knowledge base; makes an empty one when there is none.
     pub(crate) fn open(&self) -> Outcome<Arc<Store>> {
-        Ok(Arc::new(Store::open(&self.folder()?)?))
+        let store = Store::open(&self.folder()?)?;
+        Ok(Arc::new(match self.address() {
+            None => store,
+            Some(address) => store.shared_in(open_depot(&address)?),
+        }))
     }
 
-    /// The folder of the knowledge base.
+    /// The folder of the knowledge base; for a shared one that of its near copy.
     pub(crate) fn folder(&self) -> Outcome<PathBuf> {
-        match self.store.clone().or_else(|| variable("ROBOTC_STORE")) {
+        if let Some(address) = self.address() {
+            let name = ContentHash::of(address.as_bytes()).short();
+            return Ok(cache_folder()?.join("robotc-near").join(name));
+        }
+        match self.given() {
             Some(folder) => Ok(folder),
             None => Ok(cache_folder()?.join("robotc")),
         }
     }
+
+    fn given(&self) -> Option<PathBuf> {
+        self.store.clone().or_else(|| variable("ROBOTC_STORE"))
+    }
+
+    fn address(&self) -> Option<String> {
+        self.given()?.into_os_string().into_string().ok().filter(|text| depot::is_address(text))
+    }
+}
+
+/// Opens a depot; what it needs to know beside its address comes from the environment.
+pub(crate) fn open_depot(address: &str) -> Outcome<Box<dyn Depot>> {
+    let text =
+        |(name, value): (OsString, OsString)| Some((name.into_string().ok()?, value.into_string().ok()?));
+    let settings: Vec<_> = std::env::vars_os().filter_map(text).collect();
+    Ok(depot::open(address, &settings)?)
 }
 
 /// The folder for files that can be made again: `$XDG_CACHE_HOME`, or what the system has in its place.
@@ -50,6 +79,18 @@ fn variable(name: &str) -> Option<PathBuf> {
 
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
+        Self::Environment(error.to_string())
+    }
+}
+
+impl From<DepotError> for Failure {
+    fn from(error: DepotError) -> Self {
+        Self::Environment(error.to_string())
+    }
+}
+
+impl From<TransferError> for Failure {
+    fn from(error: TransferError) -> Self {
         Self::Environment(error.to_string())
     }
 }
@@ -149,6 +190,9 @@ impl Observer for Display {
                 if oldest == Some(&title) {
                     progress.update(&title, done as f64 / total.max(1) as f64);
                 }
+            }
+            Event::Brought { kind, subject } => {
+                progress.finish(&format!("  {kind} of {subject}: from the shared knowledge base"));
             }
             Event::Stored { kind, subject, size } => {
                 let title = format!("{kind} of {subject}");

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use crate::context::{Context, Shard};
-use crate::depot::{Depot, pieces};
+use crate::depot::{Depot, bring, offer, pieces};
 use crate::explain::{Reason, reason};
 use crate::graph::{Graph, NodeIdx};
 use crate::observer::{BuildError, Event, Observer};
@@ -212,7 +212,7 @@ impl Run<'_> {
 
 /// Computes and stores the artefact of a node whose inputs are known, or the shard of it that falls to this process.
 ///
-/// `None` when it was there. The last process to finish its shard puts the pieces together; the others get
+/// `None` when it was there, or in the depot that the store is shared in. The last process to finish its shard puts the pieces together; the others get
 /// [`BuildError::Unfinished`]. Pieces are kept in `depot`. `writer` is asked for when there is something to store.
 pub fn build_node<W: std::ops::Deref<Target = Writer>>(
     knowledge: &Knowledge,
@@ -220,7 +220,7 @@ pub fn build_node<W: std::ops::Deref<Target = Writer>>(
     depot: &dyn Depot,
     shard: Shard,
     observer: &dyn Observer,
-    writer: impl FnOnce() -> Result<W, StoreError>,
+    writer: impl Fn() -> Result<W, StoreError>,
 ) -> Result<Option<Reason>, BuildError> {
     let node = knowledge.graph().node(index);
     let store = knowledge.store();
@@ -236,12 +236,23 @@ pub fn build_node<W: std::ops::Deref<Target = Writer>>(
         Found::Damaged => Reason::Damaged,
         Found::Nothing => reason(store, subject, &record)?,
     };
+    if let Some(shared) = store.shared()
+        && let Some(content) = bring(store, &*writer()?, shared, &key)?
+    {
+        knowledge.settle(index, Known { key, content });
+        observer.event(Event::Brought { kind, subject });
+        return Ok(None);
+    }
     observer.event(Event::Started { kind, subject, reason: &reason });
     let context = Context { knowledge, key, kind, subject, depot, shard, observer };
     let bytes = node.kind.build(&*node.work, &context)?;
     let text = reason.to_string();
     let artefact =
         NewArtefact { record: &record, subject, reason: &text, provenance: PROVENANCE, bytes: &bytes };
+    if let Some(shared) = store.shared() {
+        // First, so that whatever is here is there.
+        offer(shared, artefact.archived())?;
+    }
     let content = store.publish(&*writer()?, &artefact)?;
     pieces::remove(depot, &key)?;
     knowledge.settle(index, Known { key, content });

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::depot::DepotError;
+use crate::depot::{DepotError, TransferError};
 use crate::explain::Reason;
 use crate::resolve::LoadError;
 use crate::store::StoreError;
@@ -36,6 +36,9 @@ pub enum BuildError {
     /// The depot of pieces failed.
     #[error(transparent)]
     Depot(#[from] DepotError),
+    /// The depot of finished artefacts failed.
+    #[error(transparent)]
+    Transfer(#[from] TransferError),
 }
 
 /// What happens while compiling.
@@ -62,6 +65,13 @@ pub enum Event<'a> {
         done: u64,
         /// Items in all.
         total: u64,
+    },
+    /// An artefact was brought from the depot that the store is shared in.
+    Brought {
+        /// Name of the kind.
+        kind: &'static str,
+        /// What it is about.
+        subject: &'a str,
     },
     /// An artefact is stored.
     Stored {

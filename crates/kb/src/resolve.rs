@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use thiserror::Error;
 
+use crate::depot::{TransferError, bring};
 use crate::graph::{Dep, Graph, NodeIdx};
 use crate::key::{ContentHash, Key};
 use crate::kind::{DecodeError, Kind};
@@ -61,13 +62,18 @@ pub struct Knowledge {
 }
 
 impl Knowledge {
-    /// Looks up which artefacts of the graph the store has. Reads no artefact.
-    pub fn resolve(graph: &Arc<Graph>, store: &Arc<Store>) -> Result<Self, StoreError> {
+    /// Looks up which artefacts of the graph the store has. Reads no artefact; brings those that only a depot has which the
+    /// store is [`shared_in`](Store::shared_in).
+    pub fn resolve(graph: &Arc<Graph>, store: &Arc<Store>) -> Result<Self, TransferError> {
         let knowledge = Self::unresolved(graph, store);
         for node in graph.indices() {
             if let Some(record) = knowledge.key_record(node) {
                 let key = record.key();
-                if let Some(content) = store.lookup(&key)? {
+                let content = match (store.lookup(&key)?, store.shared()) {
+                    (None, Some(depot)) => bring(store, &store.writer()?, depot, &key)?,
+                    (content, _) => content,
+                };
+                if let Some(content) = content {
                     knowledge.settle(node, Known { key, content });
                 }
             }

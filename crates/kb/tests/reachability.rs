@@ -47,6 +47,7 @@ fn maps_agree_with_exact_inverse_kinematics() {
     let arm = ArmAlone::load(&knowledge, 0).expect("compiled");
     misses_little(&map, &arm);
     promises_little_too_much(&map, &arm, &knowledge);
+    all_solutions_are_found(&arm);
     bases_reach(&map, &arm, &knowledge);
     bases_among_obstacles_are_clear_and_reach(&map, &arm, &knowledge);
     manipulability_is_the_volume_of_the_jacobian(&arm);
@@ -88,6 +89,35 @@ fn promises_little_too_much(map: &ReachabilityMap, arm: &ArmAlone, knowledge: &K
         }
     }
     assert!(yes > 100 && wrong * 20 <= yes, "{wrong} of {yes} promises do not hold");
+}
+
+/// All solutions of a pose: each once, each gets there, and the one that the pose was made from is among them.
+fn all_solutions_are_found(arm: &ArmAlone) {
+    let (mut rng, mut scratch) = (Seed::new(6).rng(), Scratch::default());
+    let (mut asked, mut found, mut most) = (0, 0, 0);
+    while asked < 200 {
+        let joints = configuration(arm, &mut rng);
+        if arm.collides(&joints, &mut scratch) {
+            continue;
+        }
+        asked += 1;
+        let pose = arm.chain().forward(&joints);
+        let solutions = arm.solutions(&pose, 1, &mut scratch);
+        most = most.max(solutions.len());
+        for solution in &solutions {
+            let off = pose.inv_mul(&arm.chain().forward(solution));
+            assert!(off.translation.vector.norm() < 1e-8 && off.rotation.angle() < 1e-8);
+            assert!(!arm.collides(solution, &mut scratch));
+        }
+        let turns = |a: f64, b: f64| (a - b).rem_euclid(std::f64::consts::TAU);
+        let near = |a: f64, b: f64| turns(a, b).min(turns(b, a)) < 1e-5;
+        let same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| near(*a, *b));
+        found += usize::from(solutions.iter().any(|solution| same(solution, &joints)));
+        for (i, solution) in solutions.iter().enumerate() {
+            assert!(!solutions[..i].iter().any(|other| same(other, solution)), "{solutions:?}");
+        }
+    }
+    assert!(found * 100 >= asked * 98 && most > 1, "{found} of {asked}, {most} at most");
 }
 
 /// Sampled bases have collision-free inverse kinematics.

@@ -5,6 +5,7 @@ mod support;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use robotc_kb::depot::{self, Depot};
 use robotc_kb::explain::Reason;
 use robotc_kb::kinds::ChainReach;
 use robotc_kb::project::OfArm;
@@ -37,6 +38,44 @@ fn what_was_computed_is_found_again() {
     assert_eq!(Locked::of(&first.knowledge), Locked::of(&second.knowledge));
     let reach = second.knowledge.load::<ChainReach>(&OfArm(0)).expect("it is there");
     assert!((reach.radius - 0.8).abs() < 1e-9 && (reach.centre_in_base.z - 0.3).abs() < 1e-9, "{reach:?}");
+}
+
+#[test]
+fn what_one_machine_computed_others_find() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let project = support::spec().project();
+    let place = folder.path().join("depot");
+    let depot = || Box::new(depot::Folder::open(&place).expect("a depot"));
+    let machine = |name: &str| {
+        let store = Store::open(&folder.path().join(name)).expect("a store");
+        Arc::new(store.shared_in(depot()))
+    };
+    let first = run(&project, &machine("first"));
+    let all = first.outcomes.len();
+    assert_eq!(first.built().count(), all);
+    let second = run(&project, &machine("second"));
+    assert_eq!(second.built().count(), 0);
+    assert_eq!(Locked::of(&first.knowledge), Locked::of(&second.knowledge));
+    let third = Knowledge::resolve(&graph(&project), &machine("third")).expect("the depot opens");
+    assert!(third.missing().is_empty());
+
+    let entries = depot::catalogue(&*depot()).expect("the depot opens");
+    assert_eq!(entries.len(), all);
+    assert_eq!(depot::verify(&*depot()).expect("the depot opens").whole, all);
+    // What is damaged there is computed again, and whole again.
+    let name = format!("artefacts/{}", entries[0].key);
+    depot().put(&name, b"nonsense").expect("the depot opens");
+    assert_eq!(depot::verify(&*depot()).expect("the depot opens").damaged, [entries[0].key]);
+    let fourth = run(&project, &machine("fourth"));
+    assert_eq!(fourth.built().count(), 1);
+    assert_eq!(depot::verify(&*depot()).expect("the depot opens").damaged, []);
+    assert_eq!(Locked::of(&first.knowledge), Locked::of(&fourth.knowledge));
+    // Everything can be fetched, and removed.
+    let all_of_it = Store::open(&folder.path().join("fifth")).expect("a store");
+    assert_eq!(depot::bring_all(&all_of_it, &*depot()).expect("the depot opens"), 0);
+    assert_eq!(all_of_it.list().expect("a list").len(), all);
+    depot::remove(&*depot(), &entries[1].key).expect("the depot opens");
+    assert_eq!(depot::catalogue(&*depot()).expect("the depot opens").len(), all - 1);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Builds by many workers: what there is to do, and doing one part of it.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -23,6 +24,13 @@ fn graph(subject: &Subject<'_>) -> PyResult<Graph> {
 
 fn failed(error: impl std::fmt::Display) -> PyErr {
     CompileError::new_err(error.to_string())
+}
+
+/// What a depot may need beside its address.
+fn settings() -> Vec<(String, String)> {
+    let text =
+        |(name, value): (OsString, OsString)| Some((name.into_string().ok()?, value.into_string().ok()?));
+    std::env::vars_os().filter_map(text).collect()
 }
 
 /// The artefacts that a subject needs, inputs first: recipe, kind, subjects, inputs, most shards, level.
@@ -63,7 +71,7 @@ pub(crate) fn build(
         return Err(PyValueError::new_err(format!("not the recipe of one artefact: {recipe}")));
     };
     let worked = long::run(py, |interrupts| {
-        let shared = depot::open(depot).map_err(failed)?;
+        let shared = depot::open(depot, &settings()).map_err(failed)?;
         let store = Arc::new(Store::open(&store).map_err(failed)?);
         let depot: &dyn Depot = &*shared;
         depot::work(&graph, &store, depot, node, shard, &Watch::silent(interrupts)).map_err(failed)

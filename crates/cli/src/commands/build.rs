@@ -24,8 +24,8 @@ pub(crate) struct Build {
     /// Compute only every n-th piece, beginning with number i
     #[arg(long, value_name = "I/N", default_value = "0/1", hide_default_value = true)]
     shard: Shard,
-    /// Folder in which workers exchange artefacts and pieces
-    #[arg(long, value_name = "DIR")]
+    /// Folder or address at which workers exchange artefacts and pieces; that of a shared knowledge base unless given
+    #[arg(long, value_name = "WHERE")]
     depot: Option<String>,
     #[command(flatten)]
     store: StoreArgs,
@@ -51,9 +51,8 @@ pub(crate) fn run(args: &Build) -> Outcome {
     };
     let title = graph.node(node).title();
     let store = args.store.open()?;
-    let shared = args.depot.as_deref().map(depot::open).transpose();
-    let shared = shared.map_err(|error| Failure::Environment(error.to_string()))?;
-    let depot: &dyn Depot = shared.as_deref().unwrap_or(&*store);
+    let given = args.depot.as_deref().map(knowledge::open_depot).transpose()?;
+    let depot: &dyn Depot = given.as_deref().or(store.shared()).unwrap_or(&*store);
     let display = Display::new();
     let worked = depot::work(&graph, &store, depot, node, args.shard, &display);
     drop(display);

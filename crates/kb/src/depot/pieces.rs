@@ -33,7 +33,7 @@ mod tests {
     #[test]
     fn damaged_pieces_are_not_there() {
         let folder = tempfile::tempdir().unwrap();
-        let depot = open(folder.path().to_str().unwrap()).unwrap();
+        let depot = open(folder.path().to_str().unwrap(), &[]).unwrap();
         let key = Key::from_bytes([7; 32]);
         assert_eq!(get(&*depot, &key, "rows-0").unwrap(), None);
         put(&*depot, &key, "rows-0", b"abc").unwrap();

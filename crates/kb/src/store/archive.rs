@@ -57,6 +57,19 @@ pub struct Archived {
     pub bytes: Arc<[u8]>,
 }
 
+#[cfg(feature = "build")]
+impl super::NewArtefact<'_> {
+    /// The artefact as archives hold it.
+    pub(crate) fn archived(&self) -> Archived {
+        Archived {
+            record: self.record.clone(),
+            subject: self.subject.to_owned(),
+            provenance: self.provenance.to_owned(),
+            bytes: self.bytes.into(),
+        }
+    }
+}
+
 #[derive(Serialize, Deserialize)]
 struct Entry {
     key: [u8; 32],

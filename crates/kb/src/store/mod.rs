@@ -40,6 +40,7 @@ pub use transfer::Transfer;
 pub use verify::{Finding, Repair, Verification};
 
 use crate::codec::DecodeError;
+use crate::depot::Depot;
 use crate::key::{ContentHash, Key};
 use crate::record::KeyRecord;
 
@@ -146,6 +147,7 @@ pub struct NewArtefact<'a> {
 pub struct Store {
     folder: PathBuf,
     connection: Mutex<Connection>,
+    shared: Option<Box<dyn Depot>>,
 }
 
 /// The right to write, held by one process at a time. Reading needs none.
@@ -167,7 +169,7 @@ impl Store {
             }
         }
         let connection = schema::open(&database)?;
-        Ok(Self { folder: folder.to_owned(), connection: Mutex::new(connection) })
+        Ok(Self { folder: folder.to_owned(), connection: Mutex::new(connection), shared: None })
     }
 
     fn make_folders(folder: &Path) -> Result<(), StoreError> {
@@ -176,6 +178,17 @@ impl Store {
             std::fs::create_dir_all(&path).map_err(|error| StoreError::Io { path, error })?;
         }
         Ok(())
+    }
+
+    /// This store as the near copy of a depot: compiling and [`Knowledge::resolve`](crate::Knowledge::resolve) bring what
+    /// it lacks from there, and compiling puts there what it computes before it stores it here.
+    pub fn shared_in(self, depot: Box<dyn Depot>) -> Self {
+        Self { shared: Some(depot), ..self }
+    }
+
+    /// The depot that this store is a near copy of.
+    pub fn shared(&self) -> Option<&dyn Depot> {
+        self.shared.as_deref()
     }
 
     /// The folder.

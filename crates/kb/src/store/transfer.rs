@@ -1,10 +1,10 @@
 //! Artefacts out of a store into an [`Archive`], and back.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rusqlite::params;
 
-use super::{Archive, ArchiveError, Archived, NewArtefact, Store, StoreError, Writer, garbage};
+use super::{Archive, ArchiveError, Archived, Listed, NewArtefact, Store, StoreError, Writer, garbage};
 use crate::key::{ContentHash, Key};
 
 /// What an export or an import moved.
@@ -43,28 +43,32 @@ impl Store {
 
     /// The artefacts of exactly these keys, those that the store has.
     pub fn pack(&self, keys: &BTreeSet<Key>) -> Result<(Vec<u8>, Transfer), StoreError> {
-        let mut artefacts = Vec::new();
-        let mut contents = BTreeSet::new();
-        let mut transfer = Transfer::default();
-        for listed in self.list()?.into_iter().filter(|a| keys.contains(&a.key)) {
-            let record = self.record(&listed.key)?.ok_or(StoreError::Missing(listed.content))?;
-            let bytes = self.read(&listed.content)?;
-            transfer.artefacts += 1;
-            transfer.new += 1;
-            if contents.insert(listed.content) {
-                transfer.bytes += bytes.len() as u64;
-            }
-            let (subject, provenance) = (listed.subject, listed.provenance);
-            artefacts.push(Archived { record, subject, provenance, bytes: bytes.into() });
-        }
+        let artefacts = self.gather(keys)?;
+        let contents: BTreeMap<ContentHash, u64> =
+            artefacts.iter().map(|a| (ContentHash::of(&a.bytes), a.bytes.len() as u64)).collect();
+        let count = artefacts.len();
+        let transfer = Transfer { artefacts: count, new: count, bytes: contents.values().sum() };
         Ok((Archive::new(artefacts).encode(), transfer))
+    }
+
+    /// Reads the artefacts of exactly these keys, those that the store has.
+    pub(crate) fn gather(&self, keys: &BTreeSet<Key>) -> Result<Vec<Archived>, StoreError> {
+        let read = |Listed { key, content, subject, provenance, .. }| {
+            let record = self.record(&key)?.ok_or(StoreError::Missing(content))?;
+            Ok(Archived { record, subject, provenance, bytes: self.read(&content)?.into() })
+        };
+        self.list()?.into_iter().filter(|a| keys.contains(&a.key)).map(read).collect()
     }
 
     /// Adds the artefacts of an archive, all of which is verified first ([`Archive::read`]).
     pub fn import(&self, writer: &Writer, file: &[u8]) -> Result<Transfer, ArchiveError> {
-        let archive = Archive::read(file)?;
-        let mut transfer = Transfer { artefacts: archive.artefacts().len(), ..Transfer::default() };
-        for Archived { record, subject, provenance, bytes } in archive.artefacts() {
+        Ok(self.take(writer, Archive::read(file)?.artefacts())?)
+    }
+
+    /// Adds verified artefacts.
+    pub(crate) fn take(&self, writer: &Writer, artefacts: &[Archived]) -> Result<Transfer, StoreError> {
+        let mut transfer = Transfer { artefacts: artefacts.len(), ..Transfer::default() };
+        for Archived { record, subject, provenance, bytes } in artefacts {
             let (key, content) = (record.key(), ContentHash::of(bytes));
             if self.lookup(&key)? == Some(content) && self.read(&content).is_ok() {
                 continue;

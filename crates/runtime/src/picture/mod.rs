@@ -1,7 +1,7 @@
 //! Artefacts as scenes to look at: one file for each kind that can be drawn, and one line in [`KINDS`].
 //!
 //! A picture holds what the artefact is about (the links, the object) and what the artefact says of it. Some are read
-//! along the timeline: a grasp set shows one grasp after the other.
+//! along the timeline: a grasp set shows one grasp after the other. What lies in a plane also has a [`plot()`].
 
 mod base_placement;
 mod convex_parts;
@@ -9,6 +9,7 @@ mod grasp_set;
 mod ik_solutions;
 mod link_statistics;
 mod palette;
+pub mod plot;
 mod reachability;
 
 use robotc_core::model::LinkPoses;
@@ -32,6 +33,13 @@ pub const KINDS: &[(&str, Draw)] = &[
     ("link_statistics", link_statistics::draw),
     ("reachability", reachability::draw),
 ];
+
+/// Plots the artefacts of a kind, each as one or more panels.
+type Plot = fn(&Knowledge, &Wanted<'_>) -> Result<Vec<plot::Panel>, LoadError>;
+
+/// What can be plotted, by name.
+pub const PLOTS: &[(&str, Plot)] =
+    &[("base_placement", base_placement::plot), ("reachability", reachability::plot)];
 
 /// Which subjects of a kind are drawn: those whose label contains a text; all of them when it is empty.
 pub struct Wanted<'a> {
@@ -78,6 +86,16 @@ pub fn picture(knowledge: &Knowledge, kind: &str, subject: &str) -> Result<Recor
     match draw(knowledge, &Wanted { text: subject }, &mut recording)? {
         0 => Err(NoPicture::Subject { kind: kind.to_owned(), subject: subject.to_owned() }),
         _ => Ok(recording),
+    }
+}
+
+/// The artefacts of a kind whose subjects contain `subject`, as values over a plane; `None` when the kind has no such form.
+pub fn plot(knowledge: &Knowledge, kind: &str, subject: &str) -> Result<Option<Vec<plot::Panel>>, NoPicture> {
+    let Some((_, plot)) = PLOTS.iter().find(|(name, _)| *name == kind) else { return Ok(None) };
+    let panels = plot(knowledge, &Wanted { text: subject })?;
+    match panels.is_empty() {
+        true => Err(NoPicture::Subject { kind: kind.to_owned(), subject: subject.to_owned() }),
+        false => Ok(Some(panels)),
     }
 }
 

@@ -11,6 +11,7 @@ use robotc_kb::kinds::reachability::{ReachabilityMap, SECTORS};
 use robotc_kb::project::OfArm;
 use robotc_kb::{Knowledge, LoadError};
 
+use super::plot::Panel;
 use super::{Wanted, palette, resting_links};
 use crate::record::{Group, Material, Node, Part, Recording, Surface};
 
@@ -51,6 +52,62 @@ pub(super) fn draw(
             .add_fact("reached in part", share(some - whole));
     }
     Ok(arms.len())
+}
+
+/// Two cuts through each map: along the first axis, and across it where most is reached.
+pub(super) fn plot(knowledge: &Knowledge, wanted: &Wanted<'_>) -> Result<Vec<Panel>, LoadError> {
+    let project = knowledge.graph().project();
+    let mut panels = Vec::new();
+    for arm in wanted.of::<OfArm>(project) {
+        let map = knowledge.load::<Reachability>(&arm)?;
+        let name = &project.robot().arms[arm.0].name;
+        let densities = map.densities();
+        let (radial, step) = (map.grid.radial, map.grid.step);
+        let vertical = 2 * radial;
+        let (half, sectors) = (radial as f64 * step, SECTORS as usize);
+        let column = |height: usize| -> f64 {
+            (0..radial).map(|r| (r as f64 + 0.5) * densities[r * vertical + height].iter().sum::<f64>()).sum()
+        };
+        let widest = (0..vertical).max_by(|a, b| column(*a).total_cmp(&column(*b))).unwrap_or(radial);
+        // To the right azimuth zero, to the left the opposite.
+        let along = (0..vertical).flat_map(|height| {
+            let right = (0..radial).map(move |r| (r, 0));
+            let left = (0..radial).rev().map(move |r| (r, sectors / 2));
+            left.chain(right).map(move |(r, sector)| (r * vertical + height, sector))
+        });
+        let across = (0..vertical).flat_map(|row| (0..vertical).map(move |column| (row, column))).map(
+            |(row, column)| {
+                let centre = |i: usize| (i as f64 + 0.5 - radial as f64) * step;
+                let (x, y) = (centre(column), centre(row));
+                let place = ((x * x + y * y).sqrt() / step) as usize;
+                let turn = libm::atan2(y, x).rem_euclid(TAU) / TAU;
+                let sector = ((turn * sectors as f64) as usize).min(sectors - 1);
+                if place < radial { densities[place * vertical + widest][sector] } else { 0.0 }
+            },
+        );
+        let panel = |title: String, axes: [&'static str; 2], values: Vec<f64>| Panel {
+            title,
+            axes,
+            corner: [-half, -half],
+            step,
+            columns: vertical,
+            values,
+            scale: "density over all rotations",
+            marks: Vec::new(),
+        };
+        let height = map.grid.corner(widest).1 + 0.5 * step;
+        panels.push(panel(
+            format!("{name}: cut along the first axis"),
+            ["distance from the axis, at azimuth 0 (m)", "height along the axis (m)"],
+            along.map(|(place, sector)| densities[place][sector]).collect(),
+        ));
+        panels.push(panel(
+            format!("{name}: cut across the first axis at {height:.2} m"),
+            ["x of the axis frame (m)", "y of the axis frame (m)"],
+            across.collect(),
+        ));
+    }
+    Ok(panels)
 }
 
 /// The faces between places that are reached in some rotation and those that are not, or that are cut away, for each shade

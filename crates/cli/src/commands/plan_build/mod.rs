@@ -31,8 +31,8 @@ pub(crate) struct PlanBuild {
     /// Processes that share each large artefact, in a workflow
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=PIECES as i64))]
     shards: u32,
-    /// Folder in which the workers of a workflow exchange artefacts and pieces
-    #[arg(long, value_name = "DIR", default_value = "depot")]
+    /// Folder or address at which the workers of a workflow exchange artefacts and pieces
+    #[arg(long, value_name = "WHERE", default_value = "depot")]
     depot: String,
 }
 

@@ -248,6 +248,25 @@ impl ArmAlone {
         best
     }
 
+    /// All joint vectors that reach a tip pose within limits and without self-collision, for `samples` evenly spaced values of
+    /// each free joint, each once.
+    ///
+    /// At the [centre](super::Grid::centre) of a cell their number is the count that the thesis keeps for it (algorithm 4.4), and
+    /// each is a witness. They are found when asked for, as exactly as any stored would be.
+    pub fn solutions(&self, base_from_tip: &Pose, samples: usize, scratch: &mut Scratch) -> Vec<Vec<f64>> {
+        /// Joint values nearer to each other than this are of one solution, radians or metres.
+        const SAME: f64 = 1e-6;
+        let mut all: Vec<Vec<f64>> = Vec::new();
+        self.reach_where(base_from_tip, &self.free_values(samples), scratch, |joints, _| {
+            let same = |other: &Vec<f64>| other.iter().zip(joints).all(|(a, b)| (a - b).abs() < SAME);
+            if !all.iter().any(same) {
+                all.push(joints.to_vec());
+            }
+            false
+        });
+        all
+    }
+
     /// Manipulability at a joint vector: the square root of det(J J^T) of the tip's 6-row Jacobian, angles in radians and
     /// lengths in metres (Yoshikawa, "Manipulability of robotic mechanisms", 1985). Zero where the arm is singular, and for
     /// arms with fewer than six joints.

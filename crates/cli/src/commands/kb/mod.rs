@@ -1,5 +1,7 @@
 //! `robotc kb`: looking into the knowledge base and looking after it.
 
+mod shared;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
@@ -7,7 +9,7 @@ use robotc_kb::record::Source;
 use robotc_kb::store::{ArchiveError, Finding, Listed, Rebuilt};
 use robotc_kb::{Key, Store, kinds};
 
-use super::compile::{read_lock, write_whole};
+use crate::commands::compile::{read_lock, write_whole};
 use crate::knowledge::StoreArgs;
 use crate::output::{Failure, Outcome, count, print, say, size};
 
@@ -68,15 +70,32 @@ enum KbCommand {
 }
 
 pub(crate) fn run(args: &Kb) -> Outcome {
-    let open = || args.store.open();
-    match &args.command {
-        KbCommand::Ls { filter } => list(&*open()?, filter.as_deref().unwrap_or_default()),
-        KbCommand::Show { artefact } => show(&*open()?, artefact),
-        KbCommand::Verify { repair } => verify(&*open()?, *repair),
-        KbCommand::Rebuild => rebuild(&args.store.folder()?),
-        KbCommand::Gc { dry_run, keep } => collect(&*open()?, *dry_run, keep),
+    if let KbCommand::Rebuild = args.command {
+        return rebuild(&args.store.folder()?);
+    }
+    let store = args.store.open()?;
+    match (&args.command, store.shared()) {
+        (KbCommand::Ls { filter }, Some(depot)) => shared::list(depot, filter.as_deref().unwrap_or_default()),
+        (KbCommand::Verify { repair }, Some(depot)) => shared::verify(depot, *repair),
+        (KbCommand::Gc { dry_run, keep }, Some(depot)) => shared::collect(&store, depot, *dry_run, keep),
+        (command, depot) => {
+            if let (KbCommand::Show { .. } | KbCommand::Export { .. }, Some(depot)) = (command, depot) {
+                robotc_kb::depot::bring_all(&store, depot)?;
+            }
+            near(command, &store)
+        }
+    }
+}
+
+/// What is done in the folder of the knowledge base.
+fn near(command: &KbCommand, store: &Store) -> Outcome {
+    match command {
+        KbCommand::Ls { filter } => list(store, filter.as_deref().unwrap_or_default()),
+        KbCommand::Show { artefact } => show(store, artefact),
+        KbCommand::Verify { repair } => verify(store, *repair),
+        KbCommand::Rebuild => rebuild(store.folder()),
+        KbCommand::Gc { dry_run, keep } => collect(store, *dry_run, keep),
         KbCommand::Export { file, lock } => {
-            let store = open()?;
             let roots = lock.as_deref().map(read_lock).transpose()?.map(|lock| lock.keys());
             let (bytes, moved) = store.export(roots.as_deref())?;
             write_whole(file, &bytes)?;
@@ -89,13 +108,15 @@ pub(crate) fn run(args: &Kb) -> Outcome {
             Ok(())
         }
         KbCommand::Import { file } => {
-            let store = open()?;
             let bytes =
                 std::fs::read(file).map_err(|e| Failure::Environment(format!("{}: {e}", file.display())))?;
             let moved = store.import(&store.writer()?, &bytes).map_err(|error| match error {
                 ArchiveError::Store(error) => Failure::Environment(error.to_string()),
                 error => Failure::Input(format!("{}: {error}", file.display())),
             })?;
+            if let Some(depot) = store.shared() {
+                shared::put_away_all(store, depot)?;
+            }
             let all = count(moved.artefacts, "artefact");
             print(&format!("{}: {all}, {} new, {}", file.display(), moved.new, size(moved.bytes)));
             Ok(())
