@@ -186,9 +186,9 @@ impl Workshop {
             ensure!(std::fs::read_to_string(self.folder.join(lock))? == expected, "{address}: other bytes");
             ensure!(told.contains("up to date") == (machine == "second"), "{machine}: {told}");
         }
-        let listed = self.succeeds("third", &["kb", "ls", "--store", address])?;
-        let locked = expected.lines().filter(|line| line.contains("key")).count();
-        println!("shared at {address}: {} artefacts listed, {locked} locked", listed.lines().count());
+        let listed = self.succeeds("third", &["kb", "ls", "--store", address])?.lines().count();
+        let planned = self.succeeds("alone", &["plan-build", TASK])?.lines().count();
+        ensure!(listed == planned, "{address}: {listed} artefacts listed, {planned} planned");
         ["first", "second", "third"].iter().try_for_each(|machine| remove(&self.folder.join(machine)))
     }
 }

@@ -8,6 +8,7 @@ use robotc_kb::Project;
 use robotc_kb::os::OsSystem;
 
 use crate::output::{self, Failure, Outcome};
+use crate::settings::Settings;
 
 /// What kind of specification a file is, by its name: `*.robot.toml` or `*.task.toml`.
 pub(crate) fn kind_of(path: &Path) -> Option<SpecKind> {
@@ -22,14 +23,16 @@ pub(crate) fn kind_of(path: &Path) -> Option<SpecKind> {
 }
 
 /// Reads a robot or task specification into what the knowledge base compiles.
-pub(crate) fn project(path: &Path) -> Outcome<Project> {
+pub(crate) fn project(path: &Path, settings: &Settings) -> Outcome<Project> {
     match kind_of(path) {
-        Some(SpecKind::Task) => Ok(Project::of_task(&task(path)?)),
+        Some(SpecKind::Task) => Ok(Project::of_task(&task(path, settings)?)),
         Some(SpecKind::Robot) => {
             let mut sources = Sources::new();
             let table = robotc_kb::kinds::parameter_table();
             let (spec, found) = spec::load_robot(&OsSystem, &mut sources, path, &table);
-            Ok(Project::of_robot(&accept(spec, &found, &sources)?))
+            let mut spec = accept(spec, &found, &sources)?;
+            settings.apply(&mut spec.parameters);
+            Ok(Project::of_robot(&spec))
         }
         None => Err(Failure::Input(format!(
             "{} is neither a *.robot.toml nor a *.task.toml; `robotc init` writes one from a URDF",
@@ -39,7 +42,7 @@ pub(crate) fn project(path: &Path) -> Outcome<Project> {
 }
 
 /// Reads a task specification.
-pub(crate) fn task(path: &Path) -> Outcome<TaskSpec> {
+pub(crate) fn task(path: &Path, settings: &Settings) -> Outcome<TaskSpec> {
     if kind_of(path) == Some(SpecKind::Robot) {
         let path = path.display();
         return Err(Failure::Input(format!("{path} is a robot specification; this needs a *.task.toml")));
@@ -47,7 +50,9 @@ pub(crate) fn task(path: &Path) -> Outcome<TaskSpec> {
     let mut sources = Sources::new();
     let table = robotc_kb::kinds::parameter_table();
     let (spec, found) = spec::load_task(&OsSystem, &mut sources, path, &table);
-    accept(spec, &found, &sources)
+    let mut spec = accept(spec, &found, &sources)?;
+    settings.apply(&mut spec.parameters);
+    Ok(spec)
 }
 
 /// Prints what was found and passes on the value, if there is one.

@@ -8,6 +8,7 @@ mod input;
 mod knowledge;
 mod output;
 mod progress;
+mod settings;
 
 use std::process::ExitCode;
 

@@ -15,6 +15,7 @@ use super::compile::write_whole;
 use crate::knowledge::{self, StoreArgs};
 use crate::output::{Failure, Outcome, print, say};
 use crate::progress::Progress;
+use crate::settings::Settings;
 
 /// Find from where an arm can open the doors and drawers of a task, in firm grasps and in loose ones
 #[derive(Args)]
@@ -102,7 +103,7 @@ pub(super) struct Weights {
 }
 
 fn open(task: &Path, store: &StoreArgs) -> Outcome<Session> {
-    let spec = crate::input::task(task)?;
+    let spec = crate::input::task(task, &Settings::default())?;
     let graph = knowledge::plan(&Project::of_task(&spec))?;
     let compiled = knowledge::compile(&graph, &store.open()?)?;
     Session::open(&compiled.knowledge).map_err(|error| Failure::Input(error.to_string()))

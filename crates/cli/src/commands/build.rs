@@ -8,6 +8,7 @@ use robotc_kb::{BuildError, Shard};
 
 use crate::knowledge::{self, Display, StoreArgs};
 use crate::output::{Failure, Outcome, print};
+use crate::settings::Settings;
 
 /// Compute one artefact, or a shard of it: what `robotc plan-build` lists
 #[derive(Args)]
@@ -28,11 +29,13 @@ pub(crate) struct Build {
     #[arg(long, value_name = "WHERE")]
     depot: Option<String>,
     #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
     store: StoreArgs,
 }
 
 pub(crate) fn run(args: &Build) -> Outcome {
-    let graph = knowledge::plan(&crate::input::project(&args.file)?)?;
+    let graph = knowledge::plan(&crate::input::project(&args.file, &args.settings)?)?;
     let node = match graph.with_recipe(&args.node)[..] {
         [node] => node,
         [] => {

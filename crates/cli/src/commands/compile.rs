@@ -11,6 +11,7 @@ use robotc_kb::{Graph, LockFile, Locked};
 
 use crate::knowledge::{self, StoreArgs};
 use crate::output::{Failure, Outcome, count, print, say};
+use crate::settings::Settings;
 
 /// Compile robot and task specifications into the knowledge base
 #[derive(Args)]
@@ -28,6 +29,8 @@ pub(crate) struct Compile {
     /// The lock file [default: robotc.lock in the folder of each specification]
     #[arg(long, value_name = "FILE")]
     lock: Option<PathBuf>,
+    #[command(flatten)]
+    settings: Settings,
     #[command(flatten)]
     store: StoreArgs,
 }
@@ -49,7 +52,7 @@ pub(crate) fn run(args: &Compile) -> Outcome {
             None => file.parent().unwrap_or(Path::new("")).join("robotc.lock"),
         };
         let section = section_name(&lock, file)?;
-        let graph = knowledge::plan(&crate::input::project(file)?)?;
+        let graph = knowledge::plan(&crate::input::project(file, &args.settings)?)?;
         items.push(Item { file, graph, lock, section });
     }
     if args.locked {

@@ -9,6 +9,7 @@ use robotc_kb::explain::Fate;
 
 use crate::knowledge::{self, StoreArgs};
 use crate::output::{Failure, Outcome, print};
+use crate::settings::Settings;
 
 /// Explain a diagnostic code, or why each artefact of a specification was or will be computed
 #[derive(Args)]
@@ -22,6 +23,8 @@ pub(crate) struct Explain {
     /// With a file: only artefacts whose kind or subject contains this
     filter: Option<String>,
     #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
     store: StoreArgs,
 }
 
@@ -34,7 +37,7 @@ pub(crate) fn run(args: &Explain) -> Outcome {
             Ok(())
         }
         Some(file) if crate::input::kind_of(Path::new(file)).is_some() => {
-            artefacts(Path::new(file), args.filter.as_deref().unwrap_or_default(), &args.store)
+            artefacts(Path::new(file), args.filter.as_deref().unwrap_or_default(), args)
         }
         Some(code) => diagnostic(code),
     }
@@ -54,9 +57,9 @@ fn diagnostic(code: &str) -> Outcome {
     }
 }
 
-fn artefacts(file: &Path, filter: &str, store: &StoreArgs) -> Outcome {
-    let graph = knowledge::plan(&crate::input::project(file)?)?;
-    let known = Knowledge::resolve(&graph, &store.open()?)?;
+fn artefacts(file: &Path, filter: &str, args: &Explain) -> Outcome {
+    let graph = knowledge::plan(&crate::input::project(file, &args.settings)?)?;
+    let known = Knowledge::resolve(&graph, &args.store.open()?)?;
     let fates = robotc_kb::explain::explain(&known)?;
     for (node, fate) in graph.nodes().iter().zip(&fates) {
         let title = node.title();

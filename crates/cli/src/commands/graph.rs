@@ -6,6 +6,7 @@ use clap::Args;
 
 use crate::knowledge;
 use crate::output::{Outcome, print, print_text};
+use crate::settings::Settings;
 
 /// Show the graph of artefacts of a specification
 #[derive(Args)]
@@ -21,10 +22,12 @@ pub(crate) struct Graph {
     /// Show all parameters, also those that have their default values
     #[arg(long)]
     parameters: bool,
+    #[command(flatten)]
+    settings: Settings,
 }
 
 pub(crate) fn run(args: &Graph) -> Outcome {
-    let graph = knowledge::plan(&crate::input::project(&args.file)?)?;
+    let graph = knowledge::plan(&crate::input::project(&args.file, &args.settings)?)?;
     if args.dot {
         print_text(&graph.to_dot());
         return Ok(());

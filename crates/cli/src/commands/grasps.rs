@@ -10,6 +10,7 @@ use robotc_kb::project::OfGripperAndObject;
 use super::compile::write_whole;
 use crate::knowledge::{self, StoreArgs};
 use crate::output::{Failure, Outcome, count, print, print_text};
+use crate::settings::Settings;
 
 /// Write grasp sets in the formats of other programs, and convert between them
 #[derive(Args)]
@@ -106,7 +107,7 @@ pub(crate) fn run(args: &Grasps) -> Outcome {
 
 /// The grasps of an object, computed where they are not known.
 fn exported(args: &Grasps, path: &Path, object: &str, gripper: Option<&str>) -> Outcome<GraspFile> {
-    let spec = crate::input::task(path)?;
+    let spec = crate::input::task(path, &Settings::default())?;
     let (task, robot) = (&spec.task, &spec.robot.robot);
     let unknown = |what: &str, name: &str, all: Vec<&str>| {
         Failure::Input(format!("there is no {what} \"{name}\"; there are {}", all.join(", ")))

@@ -13,6 +13,7 @@ use serde::Serialize;
 use super::compile::write_whole;
 use crate::knowledge::{self, StoreArgs};
 use crate::output::{Failure, Outcome, print, say};
+use crate::settings::Settings;
 
 /// Plan a free motion of a task's arm from a problem document
 #[derive(Args)]
@@ -37,11 +38,13 @@ pub(crate) struct Plan {
     #[arg(long, value_name = "FILE.json", conflicts_with_all = ["problem", "output", "validate"])]
     template: Option<PathBuf>,
     #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
     store: StoreArgs,
 }
 
 pub(crate) fn run(args: &Plan) -> Outcome {
-    let spec = crate::input::task(&args.task)?;
+    let spec = crate::input::task(&args.task, &args.settings)?;
     let graph = knowledge::plan(&Project::of_task(&spec))?;
     let compiled = knowledge::compile(&graph, &args.store.open()?)?;
     let session = Session::open(&compiled.knowledge).map_err(|error| Failure::Input(error.to_string()))?;

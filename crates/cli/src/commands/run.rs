@@ -16,6 +16,7 @@ use serde::Serialize;
 use super::compile::write_whole;
 use crate::knowledge::{self, StoreArgs};
 use crate::output::{Failure, Outcome, count, print, say};
+use crate::settings::Settings;
 
 /// Compile what a task needs, plan it, and run it in a kinematic simulation
 #[derive(Args)]
@@ -50,6 +51,8 @@ pub(crate) struct Run {
     #[arg(long, value_name = "FILE.json")]
     write_options: Option<PathBuf>,
     #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
     store: StoreArgs,
 }
 
@@ -59,7 +62,7 @@ const CONTROL_RATE: f64 = 250.0;
 pub(crate) fn run(args: &Run) -> Outcome {
     check_outputs(args)?;
     let mut clock = Clock::default();
-    let spec = clock.stage("check", || crate::input::task(&args.task))?;
+    let spec = clock.stage("check", || crate::input::task(&args.task, &args.settings))?;
     let project = Project::of_task(&spec);
     let store = args.store.open()?;
     let graph = knowledge::plan(&project)?;

@@ -9,6 +9,7 @@ use robotc_runtime::{picture, view};
 use super::compile::write_whole;
 use crate::knowledge::{self, StoreArgs};
 use crate::output::{Failure, Outcome, say};
+use crate::settings::Settings;
 
 /// Draw artefacts of a specification: a 3-D page, or a plot of what lies in a plane
 #[derive(Args)]
@@ -30,6 +31,8 @@ pub(crate) struct View {
     #[arg(long, value_name = "FILE.glb")]
     glb: Option<PathBuf>,
     #[command(flatten)]
+    settings: Settings,
+    #[command(flatten)]
     store: StoreArgs,
 }
 
@@ -46,7 +49,7 @@ pub(crate) fn run(args: &View) -> Outcome {
         let kinds = kinds.join(", ");
         return Err(Failure::Input(format!("{} is not one of the kinds drawn: {kinds}{hint}", args.kind)));
     }
-    let graph = knowledge::plan(&crate::input::project(&args.file)?)?;
+    let graph = knowledge::plan(&crate::input::project(&args.file, &args.settings)?)?;
     let compiled = knowledge::compile(&graph, &args.store.open()?)?;
     let subject = args.subject.as_deref().unwrap_or_default();
     let (plots, pages): (Vec<&PathBuf>, Vec<&PathBuf>) =

@@ -7,7 +7,8 @@
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
         distributed.compile("mug.task.toml", depot="/shared/depot", submit=pool.submit)
 
-The workers meet in the depot, a folder that all of them see. Any of them may die; running it again goes on from there.
+The workers meet in the depot, a folder that all of them see, or an address such as s3://bucket/kb where the package was
+built with the features for that. Any of them may die; running it again goes on from there.
 """
 
 from __future__ import annotations

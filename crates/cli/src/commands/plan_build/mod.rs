@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use crate::knowledge;
 use crate::output::{Outcome, print};
+use crate::settings::Settings;
 
 /// List the artefacts of a specification with what each needs, or write a workflow that computes them
 #[derive(Args)]
@@ -34,6 +35,8 @@ pub(crate) struct PlanBuild {
     /// Folder or address at which the workers of a workflow exchange artefacts and pieces
     #[arg(long, value_name = "WHERE", default_value = "depot")]
     depot: String,
+    #[command(flatten)]
+    settings: Settings,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -66,6 +69,7 @@ struct Step {
 struct Workflow<'a> {
     file: String,
     depot: &'a str,
+    settings: &'a Settings,
     /// Processes for each artefact that can be shared.
     shards: usize,
     /// Inputs come before what is computed from them.
@@ -75,7 +79,11 @@ struct Workflow<'a> {
 impl Workflow<'_> {
     /// The command of a step, without its shard.
     fn command(&self) -> String {
-        format!("robotc build {} --depot {}", quoted(&self.file), quoted(self.depot))
+        let mut command = format!("robotc build {} --depot {}", quoted(&self.file), quoted(self.depot));
+        for setting in self.settings.words() {
+            command += &format!(" --set {}", quoted(&setting));
+        }
+        command
     }
 
     fn shards_of(&self, step: &Step) -> usize {
@@ -84,10 +92,11 @@ impl Workflow<'_> {
 }
 
 pub(crate) fn run(args: &PlanBuild) -> Outcome {
-    let graph = knowledge::plan(&crate::input::project(&args.file)?)?;
+    let graph = knowledge::plan(&crate::input::project(&args.file, &args.settings)?)?;
     let workflow = Workflow {
         file: args.file.display().to_string(),
         depot: &args.depot,
+        settings: &args.settings,
         shards: args.shards as usize,
         steps: steps(&graph),
     };
