@@ -9,7 +9,7 @@ pub fn markdown(rows: &[Row], count: usize) -> String {
     let mut out = format!(
         "# Inverse kinematics beside published solvers\n\n\
          All solvers of an arm ran on the same poses, interleaved in one process; {count} poses a set at most. Times are median and mean\n\
-         over poses of the fastest of five calls, the clock's own time subtracted; of a batch of 1000 only the mean is known. *Ratio* is the\n\
+         over poses of the fastest of five calls, the clock's own time subtracted; of a batch of 1000 the mean, in processor time. *Ratio* is the\n\
          median by that of the published solver of the arm on the same set. *Solved*: an answer reaches the pose to 1e-6. *Wrong*: an\n\
          answer, not marked as least-squares, does not. All were built with opt-level 3, one codegen unit, thin link-time optimisation and\n\
          the default target features. *std* and *core* are generated Rust files, the latter without the square root of the platform. Of\n\
