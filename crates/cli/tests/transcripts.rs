@@ -5,7 +5,8 @@
 //! `! ` before each line, then the exit code unless it is 0. Text before the first command says what is shown. Commands:
 //!
 //! - `robotc ...`, words separated by spaces; ` | head N` at the end keeps the first N lines of standard output;
-//! - `replace FILE: OLD => NEW` edits a file;
+//! - `replace FILE: OLD => NEW` edits a file; `\n` in what is new starts a line;
+//! - `ship FOLDER` copies a folder of `specs/` into the folder of the session;
 //! - `cat FILE`.
 //!
 //! What depends on machine, time or revision is replaced: `<seconds>`, `<time>`, `<size>`, `<hash>`, `<version>`, `<folder>`.
@@ -88,9 +89,16 @@ fn play(written: &str) -> String {
     let mut played: String =
         written.lines().take_while(|line| !line.starts_with("$ ")).map(|line| format!("{line}\n")).collect();
     for command in commands(written) {
-        let (output, code) = match command.strip_prefix("replace ") {
-            Some(edit) => (replace(edit, folder.path()), 0),
-            None => run(&command, folder.path()),
+        let (output, code) = match command.split_once(' ') {
+            Some(("replace", edit)) => (replace(edit, folder.path()), 0),
+            Some(("ship", name)) => {
+                copy(
+                    &Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs").join(name),
+                    &folder.path().join(name),
+                );
+                (String::new(), 0)
+            }
+            _ => run(&command, folder.path()),
         };
         write!(played, "$ {command}\n{}", normal(&output, folder.path())).expect("text");
         if code != 0 {
@@ -100,6 +108,20 @@ fn play(written: &str) -> String {
     played
 }
 
+/// Copies a folder with all that is in it.
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).expect("a folder");
+    for entry in std::fs::read_dir(from).expect("a folder of `specs/`") {
+        let from = entry.expect("an entry").path();
+        let to = to.join(from.file_name().expect("a name"));
+        if from.is_dir() {
+            copy(&from, &to);
+        } else {
+            std::fs::copy(&from, &to).expect("a copy");
+        }
+    }
+}
+
 /// `FILE: OLD => NEW`.
 fn replace(edit: &str, folder: &Path) -> String {
     let (file, change) = edit.split_once(": ").expect("replace FILE: OLD => NEW");
@@ -107,7 +129,7 @@ fn replace(edit: &str, folder: &Path) -> String {
     let path = folder.join(file);
     let text = std::fs::read_to_string(&path).expect("the file is there");
     assert_eq!(text.matches(old).count(), 1, "`{old}` in {file}");
-    std::fs::write(path, text.replace(old, new)).expect("the file can be written");
+    std::fs::write(path, text.replace(old, &new.replace("\\n", "\n"))).expect("the file can be written");
     String::new()
 }
 

@@ -87,6 +87,8 @@ pub enum Base {
         footprint: Vec<[f64; 2]>,
         /// Whether it can move sideways.
         holonomic: bool,
+        /// The joints that stand for its driving, if the description has them: along x and along y of the root, then about z.
+        joints: Option<[DofIdx; 3]>,
     },
 }
 

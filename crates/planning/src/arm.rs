@@ -102,6 +102,11 @@ impl ArmModel {
         Self { world_from_base: world_from_new * robot_from_base, ..self.clone() }
     }
 
+    /// The same arm with its base at `world_from_base`.
+    pub(crate) fn on(&self, world_from_base: Pose) -> Self {
+        Self { world_from_base, ..self.clone() }
+    }
+
     /// The degrees of freedom, base to tip.
     pub fn dofs(&self) -> &[DofIdx] {
         &self.dofs

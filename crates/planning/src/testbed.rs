@@ -43,7 +43,21 @@ fn limits(range: f64) -> (f64, f64, bool, DynamicLimits) {
 
 /// The arm: x forward when straight, joints about z, y, y, x, y, x.
 pub(crate) fn model(rail: bool) -> RobotModel {
+    model_on(false, rail)
+}
+
+/// The arm, bolted down or with joints by which its base drives.
+fn model_on(wheels: bool, rail: bool) -> RobotModel {
     let mut b = RobotBuilder::new("testbed");
+    if wheels {
+        ["floor", "along_x", "along_y"].map(|name| b.link(name, vec![], vec![], None));
+        let mut drive = |name: &str, motion, parent: &str, child: &str, axis, range| {
+            b.moving(name, motion, parent, child, Origin::default(), axis, limits(range), None);
+        };
+        drive("drive_x", JointMotion::Prismatic, "floor", "along_x", [1.0, 0.0, 0.0], 5.0);
+        drive("drive_y", JointMotion::Prismatic, "along_x", "along_y", [0.0, 1.0, 0.0], 5.0);
+        drive("drive_turn", JointMotion::Revolute, "along_y", "base", [0.0, 0.0, 1.0], 6.0);
+    }
     b.link("base", vec![], shape([0.0, 0.0, 0.15], [0.15, 0.15, 0.3]), None);
     b.link("column", vec![], vec![], None);
     b.link("shoulder", vec![], shape([0.0, 0.0, -0.02], [0.08, 0.08, 0.08]), None);
@@ -98,7 +112,19 @@ pub(crate) fn model(rail: bool) -> RobotModel {
 
 /// The arm with its gripper, resting at [`REST`].
 pub(crate) fn robot(rail: bool) -> Robot {
-    let model = model(rail);
+    robot_of(model(rail), rail)
+}
+
+/// The arm without rail on a base that drives, half a metre to each side.
+pub(crate) fn mobile_robot() -> Robot {
+    let robot = robot_of(model_on(true, false), false);
+    let dof = |name: &str| robot.model.dof_named(name).expect("a joint of the base");
+    let joints = Some([dof("drive_x"), dof("drive_y"), dof("drive_turn")]);
+    let footprint = vec![[0.5, -0.5], [0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5]];
+    Robot { base: Base::Planar { footprint, holonomic: true, joints }, ..robot }
+}
+
+fn robot_of(model: RobotModel, rail: bool) -> Robot {
     let link = |name: &str| model.link_named(name).expect("a link of the test arm");
     let dof = |name: &str| model.dof_named(name).expect("a joint of the test arm");
     let names = ["rail", "j1", "j2", "j3", "j4", "j5", "j6"];
@@ -156,10 +182,14 @@ pub(crate) fn arm(rail: bool) -> ArmModel {
 
 /// The arm with another solver.
 pub(crate) fn arm_with(rail: bool, ik: Arc<dyn InverseKinematics>) -> ArmModel {
-    let robot = robot(rail);
+    arm_of(&robot(rail), ik)
+}
+
+/// The arm of one of these robots.
+pub(crate) fn arm_of(robot: &Robot, ik: Arc<dyn InverseKinematics>) -> ArmModel {
     let kinematics = Kinematics::new(robot.model.clone());
     let weights = vec![1.0; robot.arms[0].dofs.len()];
-    ArmModel::new(&robot, &kinematics, 0, ik, &weights, &Pose::identity(), &rest(&robot))
+    ArmModel::new(robot, &kinematics, 0, ik, &weights, &Pose::identity(), &rest(robot))
         .expect("the test arm has a chain")
 }
 

@@ -40,8 +40,12 @@ pub fn film(session: &Session, execution: &Execution, trees: &TreeKeeper) -> Rec
     let (objects, obstacles) = recording.add_bodies(task);
 
     let arm = session.arm();
-    let tool =
-        |q: &Configuration| Point3::from(arm.world_from_tool(&q.select(arm.dofs())).translation.vector);
+    // A base that drives takes the arm along.
+    let (tip, tip_from_tool) = (task.robot.arms[task.arm].tip, arm.tool_from_tip().inverse());
+    let tool = |q: &Configuration| {
+        let world_from_tip = task.world_from_robot * session.kinematics().root_from_link(q, tip);
+        Point3::from((world_from_tip * tip_from_tool).translation.vector)
+    };
     recording.add_tool_path("tool path", execution.ticks.iter().map(|tick| (tick.time, tool(&tick.q))));
     for ((set, &node), object) in session.grasps().iter().zip(&objects).zip(&task.objects) {
         let shown = set.grasps.iter().take(SHOWN_GRASPS).map(|g| &g.object_from_tool);

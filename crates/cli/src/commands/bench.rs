@@ -30,6 +30,7 @@ enum What {
     Bispace(bench_tasks::BiSpace),
     Caging(bench_tasks::Caging),
     Checks(Checks),
+    Grasps(bench_tasks::Grasps),
     Motion(Motion),
     Placement(bench_tasks::Placement),
     Weights(bench_tasks::Weights),
@@ -87,6 +88,7 @@ pub(crate) fn run(args: &Bench) -> Outcome {
     match &args.what {
         What::Bispace(args) => bench_tasks::bispace(args),
         What::Caging(args) => bench_tasks::caging(args),
+        What::Grasps(args) => bench_tasks::grasps(args),
         What::Placement(args) => bench_tasks::placement(args),
         What::Weights(args) => bench_tasks::weights(args),
         What::Checks(args) => checks(args),

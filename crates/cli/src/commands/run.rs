@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Args;
 use robotc_core::Seed;
 use robotc_kb::{Knowledge, Project};
-use robotc_planning::manipulation::{Choice, ManipulationOptions, Plan, SegmentKind};
+use robotc_planning::manipulation::{Choice, ManipulationOptions, Plan};
 use robotc_planning::{Budget, Interrupt};
 use robotc_runtime::film::{TreeKeeper, film};
 use robotc_runtime::record::Recording;
@@ -256,7 +256,7 @@ struct SegmentReport {
     seconds: f64,
     /// Length of the path of the joints, radians and metres.
     joint_length: f64,
-    /// Length of the path of the tool, metres; zero for motions of the fingers.
+    /// Length of the path of the tool, metres; zero for motions of fingers or base alone.
     tool_length: f64,
 }
 
@@ -303,10 +303,9 @@ fn segments(session: &Session, plan: &Plan) -> Vec<SegmentReport> {
         let knots = segment.trajectory.knots();
         let norm = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
         let tool = |q: &[f64]| arm.world_from_tool(q).translation.vector;
-        let fingers =
-            matches!(segment.kind, SegmentKind::Preshape | SegmentKind::Grasp | SegmentKind::Release);
+        let without_arm = !segment.trajectory.dofs().starts_with(arm.dofs());
         let tool_length = |w: &[robotc_core::trajectory::TrajectoryPoint]| {
-            if fingers { 0.0 } else { (tool(&w[1].positions) - tool(&w[0].positions)).norm() }
+            if without_arm { 0.0 } else { (tool(&w[1].positions) - tool(&w[0].positions)).norm() }
         };
         SegmentReport {
             kind: segment.kind.to_string(),

@@ -493,6 +493,12 @@ pub const CODES: &[CodeInfo] = &[
         "direction without length",
         "A direction needs a length above zero; its length is otherwise without meaning.",
     ),
+    entry(
+        "R0419",
+        "joints that do not drive",
+        "The `joints` of a planar base stand for its driving: one slides along x of the root, one along y, and one turns about z, in \
+         this order and without offsets. They let it move sideways, so the base must be holonomic.",
+    ),
     entry("R0501", "unknown arm", "The task names an arm that its robot specification does not define."),
     entry(
         "R0502",

@@ -1,14 +1,17 @@
 //! Base, cameras, ignored pairs and weights of a robot specification.
 
+use std::sync::Arc;
+
 use super::document::{Node, Table};
 use super::lookup;
+use crate::Pose;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::ids::{DofIdx, LinkIdx};
-use crate::model::RobotModel;
+use crate::model::{Configuration, Kinematics, RobotModel};
 use crate::robot::{Base, Camera};
 
 /// The `[base]` table; fixed when there is none.
-pub(super) fn base(robot: &Table, diagnostics: &mut Diagnostics) -> Base {
+pub(super) fn base(robot: &Table, model: &Arc<RobotModel>, diagnostics: &mut Diagnostics) -> Base {
     let Some(table) = robot.table("base") else { return Base::Fixed };
     let Some(outline) = table.get("footprint") else { return Base::Fixed };
     let corners: Option<Vec<[f64; 2]>> = table.list("footprint").iter().map(Node::array::<2>).collect();
@@ -24,7 +27,62 @@ pub(super) fn base(robot: &Table, diagnostics: &mut Diagnostics) -> Base {
     if area < 0.0 {
         footprint.reverse();
     }
-    Base::Planar { footprint, holonomic: table.get("holonomic").and_then(Node::boolean).unwrap_or(false) }
+    let holonomic = table.get("holonomic").and_then(Node::boolean).unwrap_or(false);
+    let joints = table.get("joints").and_then(|list| driving(table, list, model, holonomic, diagnostics));
+    Base::Planar { footprint, holonomic, joints }
+}
+
+/// The joints that a base drives by.
+fn driving(
+    table: &Table,
+    list: &Node,
+    model: &Arc<RobotModel>,
+    holonomic: bool,
+    diagnostics: &mut Diagnostics,
+) -> Option<[DofIdx; 3]> {
+    let dofs = lookup::dofs(model, table.list("joints"), diagnostics)?;
+    let dofs: [DofIdx; 3] = dofs.into_iter().map(|(dof, _)| dof).collect::<Vec<_>>().try_into().ok()?;
+    if !holonomic {
+        diagnostics.push(
+            Diagnostic::error("R0419", "a base that drives by its joints must be able to move sideways")
+                .at(list.span, "these joints move it along x and y as it likes")
+                .expected("`holonomic = true` beside them"),
+        );
+        return None;
+    }
+    if !moves_on_floor(model, &dofs) {
+        diagnostics.push(
+            Diagnostic::error("R0419", "these joints do not move the base over the floor")
+                .at(list.span, "not x, y and heading of what they carry")
+                .expected("a joint that slides along x of the root, one along y, and one that turns about z, in this order")
+                .hint("their frames must be those of the root: no offsets, no turns"),
+        );
+        return None;
+    }
+    Some(dofs)
+}
+
+/// Whether what the last joint carries is moved by x, y and heading in the frame of the root.
+fn moves_on_floor(model: &Arc<RobotModel>, dofs: &[DofIdx; 3]) -> bool {
+    let kinematics = Kinematics::new(model.clone());
+    let carried =
+        model.links().indices().filter(|&link| dofs.iter().all(|dof| model.dofs_moving(link).contains(dof)));
+    let mut rest = Configuration::neutral(model);
+    rest.set(dofs, &[0.0; 3]);
+    let mut moved = rest.clone();
+    let place = [0.3, -0.2, 0.5];
+    moved.set(dofs, &place);
+    let drive = Pose::from_parts(
+        nalgebra::Translation3::new(place[0], place[1], 0.0),
+        nalgebra::UnitQuaternion::from_axis_angle(&nalgebra::Vector3::z_axis(), place[2]),
+    );
+    let mut links = carried.peekable();
+    links.peek().is_some()
+        && links.all(|link| {
+            let expected = drive * kinematics.root_from_link(&rest, link);
+            let off = expected.inv_mul(&kinematics.root_from_link(&moved, link));
+            off.translation.vector.norm() < 1e-9 && off.rotation.angle() < 1e-9
+        })
 }
 
 /// Area of a polygon, positive when its corners go counter-clockwise.

@@ -198,7 +198,7 @@ fn annotate(
         arms,
         grippers,
         cameras: annotations::cameras(table, &model, diagnostics),
-        base: annotations::base(table, diagnostics),
+        base: annotations::base(table, &model, diagnostics),
         ignored_pairs,
         weights: annotations::weights(table, &model, diagnostics),
         model,

@@ -77,10 +77,16 @@ static BASE: TableSchema = TableSchema {
         )
         .unit("m"),
         Key::optional("holonomic", Kind::Bool, "Whether it can move sideways.").default("false"),
+        Key::optional(
+            "joints",
+            Kind::List(&Kind::Text(Text::Joint), Length::Exactly(3)),
+            "Joints of the description that stand for its driving: along x and along y of the root, then about z. With them a \
+             task drives to where it can reach what it has to.",
+        ),
     ],
     rules: &[
         Rule::Goes { key: "kind", value: "planar", then: "footprint" },
-        Rule::OnlyWith { keys: &["holonomic"], with: "footprint" },
+        Rule::OnlyWith { keys: &["holonomic", "joints"], with: "footprint" },
     ],
 };
 

@@ -49,7 +49,7 @@ fn limits_follow_their_precedence() {
 fn annotations_arrive() {
     let spec = wedge();
     let robot = &spec.robot.robot;
-    let Base::Planar { footprint, holonomic } = &robot.base else { panic!("planar") };
+    let Base::Planar { footprint, holonomic, joints: None } = &robot.base else { panic!("planar") };
     // Written clockwise, kept counter-clockwise.
     assert_eq!((footprint[0], footprint[1], *holonomic), ([-0.2, 0.2], [-0.2, -0.2], false));
     let weights: Vec<(&str, f64)> =

@@ -49,7 +49,7 @@ pub struct Attempt {
 }
 
 /// What became of one place.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CagingPlace {
     /// The root of the article in the frame of the robot's root, metres.
     pub x: f64,
@@ -57,8 +57,10 @@ pub struct CagingPlace {
     pub y: f64,
     /// Its heading, radians.
     pub yaw: f64,
-    /// Every grip in contact tried, none changed.
+    /// Every grip in contact tried, none changed; the time is that until the first one does.
     pub firm: Attempt,
+    /// The grips that do, as positions in the set that is used.
+    pub firm_grips: Vec<usize>,
     /// The exhaustive search; for arms without free joints.
     pub discrete: Option<Attempt>,
     /// The randomised search.
@@ -78,7 +80,9 @@ pub struct CagingReport {
     pub opening: [f64; 2],
     /// Places where the article stands clear of the robot.
     pub places: Vec<CagingPlace>,
-    /// How many of them can be opened firmly, by the exhaustive search, and by the randomised one.
+    /// How many of them one and the same firm grip opens, the best one there is.
+    pub opened_by_one: usize,
+    /// How many can be opened in some firm grip, by the exhaustive search, and by the randomised one.
     pub opened: [usize; 3],
     /// Of the places that can be opened at all, the share that the randomised search opened within two seconds.
     pub within_two_seconds: f64,
@@ -110,6 +114,7 @@ pub fn measure_caging(
         grips: cages.len(),
         opening: [from, to],
         places: vec![],
+        opened_by_one: 0,
         opened: [0; 3],
         within_two_seconds: 0.0,
         seconds: [0.0; 2],
@@ -130,6 +135,10 @@ impl CagingReport {
         let count = |opened: &dyn Fn(&CagingPlace) -> bool| self.places.iter().filter(|p| opened(p)).count();
         let discrete = |p: &CagingPlace| p.discrete.is_some_and(|a| a.opened);
         self.opened = [count(&|p| p.firm.opened), count(&discrete), count(&|p| p.randomized.opened)];
+        let grips = self.places.iter().flat_map(|p| p.firm_grips.iter().copied());
+        let mut of_grip = vec![0; self.grips];
+        grips.for_each(|grip| of_grip[grip] += 1);
+        self.opened_by_one = of_grip.into_iter().max().unwrap_or(0);
         let can = count(&|p| p.firm.opened || discrete(p) || p.randomized.opened);
         let soon = count(&|p| p.randomized.opened && p.randomized.seconds <= 2.0);
         self.within_two_seconds = soon as f64 / can.max(1) as f64;
@@ -220,10 +229,20 @@ fn try_place(
     let randomized = timed(&mut |budget| {
         restarted_search(&mut caged, &planner.caging_search, budget, Seed::new(options.seed)).is_ok()
     });
-    let firm = timed(&mut |budget| discrete_search(&mut FixedGrasp::firm(&mut caged), budget).is_ok());
+    let (start, mut first, mut firm_grips) = (now(), None, Vec::new());
+    let firm = timed(&mut |budget| {
+        for grip in (0..cages.len()).filter(|&grip| cages[grip].grasp.contact) {
+            if discrete_search(&mut FixedGrasp::one(&mut caged, grip), budget).is_ok() {
+                first.get_or_insert(now() - start);
+                firm_grips.push(grip);
+            }
+        }
+        first.is_some()
+    });
+    let firm = Attempt { seconds: first.unwrap_or(firm.seconds), ..firm };
     let discrete = (problem.arm.free_variables().is_empty())
         .then(|| timed(&mut |budget| discrete_search(&mut caged, budget).is_ok()));
-    Some(CagingPlace { x, y, yaw, firm, discrete, randomized })
+    Some(CagingPlace { x, y, yaw, firm, firm_grips, discrete, randomized })
 }
 
 /// The article elsewhere, and everything but it and the robot far away.

@@ -1,4 +1,4 @@
-//! Measurements of planners: motion over a set of given problems, doors opened from everywhere, arms on wheels, weights of the metric.
+//! Measurements of planners: motion over a set of given problems, grasps with destinations, doors opened from everywhere, arms on wheels, weights of the metric.
 //!
 //! Motion planning is one start, one goal, a robot among boxes, cylinders and spheres.
 //!
@@ -8,6 +8,7 @@
 
 mod caging;
 mod checks;
+mod grasps;
 mod mobile;
 mod placement;
 mod problems;
@@ -18,6 +19,7 @@ mod weights;
 
 pub use caging::{Attempt, CagingBenchOptions, CagingPlace, CagingReport, measure_caging};
 pub use checks::{CheckRates, measure_checks};
+pub use grasps::{GraspBenchOptions, GraspReport, measure_grasps};
 pub use mobile::{MobileBenchOptions, MobileFigures, MobileReport, measure_mobile};
 pub use placement::{PlacementFigures, PlacementReport, measure_placement};
 pub use problems::{Obstacle, Problem, ProblemSet, ProblemSetError};

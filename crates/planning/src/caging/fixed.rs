@@ -7,21 +7,32 @@ use crate::space::Space;
 /// A task in which the grasp never changes.
 pub struct FixedGrasp<'t, T: ?Sized> {
     task: &'t mut T,
-    /// Whether every grasp counts as one in contact.
-    all: bool,
+    tried: Tried,
     own: Vec<[usize; 1]>,
+}
+
+/// Grasps that are tried; each counts as one in contact.
+enum Tried {
+    All,
+    InContact,
+    One(usize),
 }
 
 impl<'t, T: ArticulatedTask + ?Sized> FixedGrasp<'t, T> {
     /// The same task without changes of grasp. Every grasp is taken to be in contact, so that all of them are tried.
     pub fn new(task: &'t mut T) -> Self {
         let own = (0..task.grasps()).map(|g| [g]).collect();
-        Self { task, all: true, own }
+        Self { task, tried: Tried::All, own }
     }
 
     /// The same task without changes of grasp, in grasps alone that are in contact: those that hold firmly.
     pub fn firm(task: &'t mut T) -> Self {
-        Self { all: false, ..Self::new(task) }
+        Self { tried: Tried::InContact, ..Self::new(task) }
+    }
+
+    /// The same task in one grasp alone.
+    pub fn one(task: &'t mut T, grasp: usize) -> Self {
+        Self { tried: Tried::One(grasp), ..Self::new(task) }
     }
 }
 
@@ -39,7 +50,11 @@ impl<T: ArticulatedTask + ?Sized> ArticulatedTask for FixedGrasp<'_, T> {
     }
 
     fn is_contact(&self, grasp: usize) -> bool {
-        self.all || self.task.is_contact(grasp)
+        match self.tried {
+            Tried::All => true,
+            Tried::InContact => self.task.is_contact(grasp),
+            Tried::One(only) => grasp == only,
+        }
     }
 
     fn adjacent(&self, grasp: usize) -> &[usize] {

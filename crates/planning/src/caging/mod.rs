@@ -16,6 +16,7 @@ mod fixed;
 mod object;
 mod randomized;
 mod restarts;
+mod starting;
 mod switch;
 mod task;
 #[cfg(test)]
@@ -24,9 +25,10 @@ mod tests;
 pub use cage::{Cage, CageHold};
 pub use discrete::discrete_search;
 pub use fixed::FixedGrasp;
-pub use object::{CageGrasp, CagedObject, CagedObjectError, CagedObjectOptions, ObjectStep};
+pub use object::{CageGrasp, CagedObject, CagedObjectError, CagedObjectOptions, ObjectStep, WaySearch};
 pub use randomized::{CageStart, RandomizedOptions, randomized_search};
 pub use restarts::restarted_search;
+pub use starting::StartingAt;
 pub use switch::{CageStage, CageSwitchFailure, open_with_sets};
 pub use task::{
     ArticulatedTask, CagedState, CagingFailure, CagingFailureReason, CagingSolution, CagingStatistics,

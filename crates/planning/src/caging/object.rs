@@ -19,6 +19,17 @@ pub struct CageGrasp {
     pub contact: bool,
 }
 
+/// How a way of the object is searched for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WaySearch {
+    /// Randomised A*, soon done where many ways lead to the goal.
+    #[default]
+    Randomized,
+    /// All grasps at all steps, which also tells that there is no way; for arms without free joints, others are searched as above.
+    Discrete,
+}
+
 /// Parameters of a caging task.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -39,6 +50,8 @@ pub struct CagedObjectOptions {
     /// Farthest that the tool may be, half way between two states, from half way between their poses: more means that the arm goes a
     /// way round. Metres.
     pub drift: f64,
+    /// How goals of tasks search for a way.
+    pub search: WaySearch,
 }
 
 impl Default for CagedObjectOptions {
@@ -51,6 +64,7 @@ impl Default for CagedObjectOptions {
             free_step: 0.05,
             branches: 3,
             drift: 0.01,
+            search: WaySearch::Randomized,
         }
     }
 }

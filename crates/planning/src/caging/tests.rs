@@ -205,6 +205,30 @@ fn another_set_takes_over_where_one_stalls() {
     assert!(failure.to_string().contains("no set of grasps moves the object on"), "{failure}");
 }
 
+#[test]
+fn a_search_may_begin_in_given_states_alone() {
+    let mut door = PlanarDoor::new(2, slalom());
+    let free = discrete_search(&mut door, &Budget::unlimited()).unwrap();
+    let starts = [free.states[0].clone()];
+    let found = discrete_search(&mut StartingAt::new(&mut door, &starts), &Budget::unlimited()).unwrap();
+    assert_eq!(found.states[0], starts[0]);
+    check(&mut door, &found.states);
+    let nowhere = discrete_search(&mut StartingAt::new(&mut door, &[]), &Budget::unlimited()).unwrap_err();
+    assert_eq!(nowhere.reason, CagingFailureReason::OutOfReach { step: 0 });
+}
+
+#[test]
+fn one_grasp_does_no_more_than_all_that_are_kept() {
+    let mut door = PlanarDoor::new(1, vec![]);
+    let mut firm = |grasp| discrete_search(&mut FixedGrasp::one(&mut door, grasp), &Budget::unlimited());
+    let found = firm(0).unwrap();
+    assert!(found.states.iter().all(|state| state.grasp == 0));
+    let mut door = PlanarDoor::new(2, slalom());
+    for grasp in 0..door.grasps() {
+        assert!(discrete_search(&mut FixedGrasp::one(&mut door, grasp), &Budget::unlimited()).is_err());
+    }
+}
+
 /// Distance of the handle from the middle of its panel. In the frame of a door x is along the panel, y out of it, z along
 /// the hinge; the lever is the handle's x.
 const HANDLE: f64 = 0.06;

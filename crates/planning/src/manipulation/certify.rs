@@ -262,6 +262,7 @@ fn replay_article(
     let of_article = (article, first_obstacle);
     let mut checker = ArticleChecker::new(scene, &joints, dofs, of_article, begins.q, rules, step);
     let mut room = Room::default();
+    let arm = problem.arm_at(begins.q);
     let opens = values.end()[0] > values.start()[0];
     let cages: Vec<&Cage> =
         problem.cages[motion.article].iter().filter(|cage| cage.hold.moves(opens)).collect();
@@ -270,7 +271,7 @@ fn replay_article(
         let mut q = begins.q.clone();
         q.set(dofs, &at[..dofs.len()]);
         let part = mechanism.world_from_part(at[dofs.len()]);
-        let tool = problem.arm.world_from_tool(&q.select(problem.arm.dofs()));
+        let tool = arm.world_from_tool(&q.select(arm.dofs()));
         let part_from_tool = part.inv_mul(&tool);
         let near = |cage: &&&Cage| {
             let grip = &cage.grasp.part_from_tool;

@@ -3,6 +3,7 @@
 use robotc_core::task::Article;
 use robotc_core::{Configuration, DofIdx, Trajectory};
 
+use super::driving::Drive;
 use super::plan::{ArticleMotion, Event, Held, Segment, SegmentKind};
 use super::problem::{GoalContext, motion_limits};
 use crate::scene::{ArticleChecker, RobotChecker, Rules, Scene};
@@ -44,6 +45,18 @@ impl<'c, 'a> Maker<'c, 'a> {
             .into_trajectory(arm.dofs().to_vec(), arm.names().to_vec())
             .expect("times of a timed path grow");
         self.push(kind, trajectory, held);
+    }
+
+    /// A motion of the base.
+    pub(super) fn drive(&mut self, drive: &Drive, path: &[Vec<f64>], scene: &Scene) {
+        let cx = self.cx;
+        let (dofs, resolution) = (drive.dofs.to_vec(), cx.options.resolution);
+        let mut checker = RobotChecker::new(scene, &drive.space, &dofs, &self.q, cx.free(None), resolution);
+        let timed = time_path(&mut checker, path, &drive.limits, &cx.options.timing);
+        let model = &cx.robot().model;
+        let names = dofs.iter().map(|&d| model.dofs()[d].name.clone()).collect();
+        let trajectory = timed.into_trajectory(dofs, names).expect("times of a timed path grow");
+        self.push(SegmentKind::Drive, trajectory, None);
     }
 
     /// A straight motion of the fingers.

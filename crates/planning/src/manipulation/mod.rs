@@ -6,6 +6,7 @@
 
 mod certify;
 mod destinations;
+mod driving;
 mod free_motion;
 mod maker;
 mod opening;
@@ -19,6 +20,7 @@ mod sequence;
 mod stretch;
 #[cfg(test)]
 mod tests;
+mod usable;
 
 pub use certify::{Uncertified, certify};
 pub use destinations::destination_poses;
@@ -32,3 +34,4 @@ pub use problem::{Manipulation, gripper_links};
 pub(crate) use problem::{finger_space, with_fingers_space};
 pub use rejections::{Cause, Filter, Rejections};
 pub use sequence::{Observer, PlanFailure, pick_and_place};
+pub use usable::{UsableGrasp, UsableGrasps, usable_grasps};

@@ -19,7 +19,7 @@ use super::stretch::{back_off, cause, fine_checker, fingers_move, state_is_free}
 use crate::budget::{Budget, Interrupt};
 use crate::caging::{
     ArticulatedTask, Cage, CageGrasp, CageStart, CagedObject, CagedState, CagingFailure, CagingFailureReason,
-    ObjectStep, RandomizedOptions, randomized_search,
+    ObjectStep, RandomizedOptions, StartingAt, WaySearch, discrete_search, randomized_search,
 };
 use crate::cartesian::LineObstacle;
 use crate::edge::Obstruction;
@@ -206,6 +206,10 @@ impl Opening<'_, '_, '_> {
         seed: Seed,
         observer: &mut dyn Observer,
     ) -> Result<(Vec<CagedState>, Motions), Box<GoalFailure>> {
+        let exhaustive = self.cx.options.caging.search == WaySearch::Discrete;
+        if exhaustive && self.cx.problem.arm.free_variables().is_empty() {
+            return self.search_all(budget, seed, observer);
+        }
         let mut starts: Vec<Start> = Vec::new();
         // The failure that is told: of the latest stage that was reached.
         let mut last: Option<Box<GoalFailure>> = None;
@@ -252,6 +256,42 @@ impl Opening<'_, '_, '_> {
             missed
         });
         Err(self.counted(missed))
+    }
+
+    /// The exhaustive search from all grips that can be approached (thesis algorithm 3.7).
+    fn search_all(
+        &mut self,
+        budget: &Budget<'_>,
+        seed: Seed,
+        observer: &mut dyn Observer,
+    ) -> Result<(Vec<CagedState>, Motions), Box<GoalFailure>> {
+        let mut starts: Vec<Start> = Vec::new();
+        loop {
+            match self.next_start(budget) {
+                Ok(Some(start)) => starts.push(start),
+                Ok(None) => break,
+                Err(interrupt) => return Err(self.interrupted(interrupt)),
+            }
+        }
+        let states: Vec<CagedState> = starts.iter().map(|start| start.state.clone()).collect();
+        let found = discrete_search(&mut StartingAt::new(&mut self.task, &states), budget);
+        let states = match found {
+            Ok(solution) => solution.states,
+            Err(failure) => {
+                let missed = self.stuck(&failure);
+                return Err(self.counted(missed));
+            }
+        };
+        let start = starts.iter().find(|start| start.state == states[0]).expect("it begins in one of them");
+        match self.around(start, &states, budget, seed, observer) {
+            Ok(Some(motions)) => Ok((states, motions)),
+            Ok(None) => {
+                let mut missed = GoalFailure::new(self.cx.object_name(), Stage::Open);
+                missed.message = "the gripper does not get off the handle at the end".into();
+                Err(self.counted(missed))
+            }
+            Err(missed) => Err(self.counted(missed)),
+        }
     }
 
     /// The next grip that can be approached; `None` when all are through.

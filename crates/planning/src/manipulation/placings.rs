@@ -28,6 +28,11 @@ impl Destinations {
         Self { poses, scenes }
     }
 
+    /// How many are known, and how many were looked at.
+    pub(super) fn counts(&self) -> [usize; 2] {
+        [self.poses.len(), self.scenes.iter().filter(|scene| scene.is_some()).count()]
+    }
+
     fn scene(
         &mut self,
         index: usize,

@@ -30,6 +30,10 @@ pub enum SegmentKind {
     Retreat,
     /// The arm moves an article in a loose grip.
     Open,
+    /// The arm folds itself above the footprint of the base, to drive.
+    Fold,
+    /// The base drives, the arm is folded.
+    Drive,
 }
 
 impl fmt::Display for SegmentKind {
@@ -45,6 +49,8 @@ impl fmt::Display for SegmentKind {
             Self::Release => "release",
             Self::Retreat => "retreat",
             Self::Open => "open",
+            Self::Fold => "fold",
+            Self::Drive => "drive",
         })
     }
 }

@@ -8,6 +8,7 @@ use robotc_core::{BodyIdx, Configuration, Pose, Seed};
 use thiserror::Error;
 
 use super::destinations::destination_poses;
+use super::driving::plan_driving;
 use super::free_motion::{FreeMotion, start_rules};
 use super::maker::Maker;
 use super::opening::{ArticleWay, plan_opening};
@@ -105,8 +106,11 @@ pub fn pick_and_place(
         let before = pending.len();
         for &number in &pending {
             observer.goal(number);
+            // A base that drives may have taken the arm along.
+            let arm = problem.arm_at(&q);
+            let problem = Manipulation { arm: &arm, ..*problem };
             let cx = GoalContext {
-                problem: *problem,
+                problem,
                 options,
                 number,
                 object: match problem.task.goals[number] {
@@ -119,7 +123,16 @@ pub fn pick_and_place(
             };
             let seed = seed.split("goal").at(number as u64).at(round);
             let reached = match problem.task.goals[number] {
-                Goal::Place { .. } => plan_goal(&cx, &scene, &q, budget, seed, observer),
+                Goal::Place { .. } => {
+                    plan_goal(&cx, &scene, &q, budget, seed, observer).or_else(|missed| {
+                        let mut there = |cx: &GoalContext<'_>, q: &Configuration, seed: Seed| {
+                            // What is shown of searches is drawn where the robot stands at first.
+                            plan_goal(cx, &scene, q, budget, seed, &mut ())
+                        };
+                        let seed = seed.split("drive");
+                        plan_driving(&cx, &scene, &q, missed, budget, seed, &mut there)
+                    })
+                }
                 Goal::Open { article, to } => {
                     let way = ArticleWay { article, from: values[article], to };
                     plan_opening(&cx, &scene, &q, way, budget, seed, observer)

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use nalgebra::{UnitQuaternion, Vector3};
 use robotc_core::geom::{ConvexParts, box_part};
 use robotc_core::model::Shape;
+use robotc_core::robot::Robot;
 use robotc_core::task::{Destination, Goal, Object, Task};
 use robotc_core::world::World;
 use robotc_core::{Kinematics, LinkIdx, Pose, Seed, TypedVec};
@@ -66,10 +67,21 @@ fn link_parts(robot: &robotc_core::Robot) -> TypedVec<LinkIdx, Arc<ConvexParts>>
 
 /// Boxes at these places, to be moved to those; obstacles by size and centre.
 fn bench(rail: bool, moves: &[([f64; 2], Goal)], obstacles: &[([f64; 3], [f64; 3])]) -> Bench {
-    let robot = Arc::new(testbed::robot(rail));
+    bench_of(testbed::robot(rail), testbed::arm(rail), 0.7, moves, obstacles)
+}
+
+/// The same for a robot of one's own and a table at this distance.
+fn bench_of(
+    robot: Robot,
+    arm: ArmModel,
+    table: f64,
+    moves: &[([f64; 2], Goal)],
+    obstacles: &[([f64; 3], [f64; 3])],
+) -> Bench {
+    let robot = Arc::new(robot);
     let kinematics = Kinematics::new(robot.model.clone());
     let standing = |[x, y]: [f64; 2]| Pose::translation(x, y, STANDING);
-    let table = ([0.7, 1.4, 0.05], [0.7, 0.0, TABLE - 0.025]);
+    let table = ([0.7, 1.4, 0.05], [table, 0.0, TABLE - 0.025]);
     let parts = |size: [f64; 3]| Arc::new(ConvexParts::new(vec![box_part(Vector3::from(size))]));
     let mut world = World::new(kinematics.clone(), Pose::identity(), testbed::rest(&robot));
     let mut body_parts = TypedVec::new();
@@ -106,7 +118,7 @@ fn bench(rail: bool, moves: &[([f64; 2], Goal)], obstacles: &[([f64; 3], [f64; 3
             goals: moves.iter().map(|(_, goal)| goal.clone()).collect(),
             seed: 1,
         },
-        arm: testbed::arm(rail),
+        arm,
         kinematics,
         grasps: grasps(),
     }
@@ -358,4 +370,75 @@ fn what_the_planner_takes_for_free_near_objects_is_free_at_a_finer_look() {
         missed_without_margin += u32::from(!truth && is_free(&no_margin, options.fine_resolution));
     }
     assert!(free > 50 && missed_without_margin > 0, "{free} {missed_without_margin}");
+}
+
+/// The box may stand anywhere in a square.
+fn anywhere([x, y]: [f64; 2], side: f64) -> Goal {
+    let world_from_region = Pose::translation(x, y, TABLE + 1e-4);
+    let destination = Destination::Region { world_from_region, size: [side; 2], origin_height: 0.06 };
+    Goal::Place { object: 0, destination, keep_upright: None }
+}
+
+#[test]
+fn the_first_usable_grasp_of_a_thousand_is_found_without_looking_at_the_others() {
+    let bench = bench(false, &[([0.6, -0.2], anywhere([0.6, 0.2], 0.3))], &[]);
+    let few = grasps().grasps;
+    let shifted = |k: usize| {
+        let mut grasp = few[k % few.len()].clone();
+        grasp.object_from_tool.translation.vector.z += 1e-5 * (k / few.len()) as f64;
+        grasp
+    };
+    let set = GraspSet::new("hand", "box", (0..1000).map(shifted).collect());
+    let options = ManipulationOptions { destinations: 100, ..options(&bench) };
+    let look = |most| {
+        let sets = [&set];
+        let problem = problem(&bench, &sets);
+        usable_grasps(&problem, &options, 0, most, &Budget::unlimited(), Seed::new(1)).unwrap().unwrap()
+    };
+    let first = look(1);
+    assert_eq!((first.found.len(), first.tried.known, first.destinations[0]), (1, 1000, 100));
+    assert!(first.tried.looked_at <= 50 && first.destinations[1] <= 10, "{first:?}");
+    let more = look(5);
+    assert_eq!((more.found.len(), &more.found[0]), (5, &first.found[0]), "it goes on where it was");
+    assert!(more.tried.looked_at > first.tried.looked_at);
+    for usable in &more.found {
+        let object_from_tool = set.grasps[usable.grasp].object_from_tool;
+        let off = |q: &[f64], world_from_object: &Pose| {
+            let reached = bench.arm.world_from_tool(q);
+            (reached.to_homogeneous() - (world_from_object * object_from_tool).to_homogeneous()).norm()
+        };
+        assert!(off(&usable.at_grasp, &bench.task.objects[0].world_from_object) < 1e-6);
+        assert!(off(&usable.at_destination, &usable.world_from_object) < 1e-6);
+    }
+}
+
+#[test]
+fn what_is_out_of_reach_is_driven_to() {
+    let ik = || Arc::new(testbed::ClosedForm { rail: false });
+    let moves = [([3.0, -0.2], anywhere([3.0, 0.2], 0.3))];
+    // A wall in between that ends on the right.
+    let wall = ([0.1, 3.0, 0.6], [1.5, 1.0, 0.3]);
+    let mobile = testbed::mobile_robot();
+    let arm = testbed::arm_of(&mobile, ik());
+    let mobile = bench_of(mobile, arm, 3.0, &moves, &[wall]);
+    for seed in 0..3 {
+        let plan = run(&mobile, seed, &Budget::unlimited()).unwrap_or_else(|e| panic!("{e}"));
+        assert!(plan.is_complete());
+        let kinds: Vec<SegmentKind> = plan.segments.iter().map(|s| s.kind).collect();
+        use SegmentKind::*;
+        assert_eq!(kinds, [Fold, Drive, Reach, Approach, Grasp, Lift, Carry, Lower, Release, Retreat]);
+        let drive = &plan.segments[1].trajectory;
+        assert!(drive.start() == [0.0; 3] && drive.end()[0] > 1.5, "round the wall: {:?}", drive.end());
+        assert!(drive.knots().iter().any(|knot| knot.positions[1] < -0.4));
+    }
+    // The same arm, bolted down.
+    let fixed = bench_of(testbed::robot(false), testbed::arm(false), 3.0, &moves, &[wall]);
+    let failure = run(&fixed, 0, &Budget::unlimited()).unwrap_err().to_string();
+    assert!(failure.contains("grasp out of reach"), "{failure}");
+    // Within reach nothing drives.
+    let robot = testbed::mobile_robot();
+    let arm = testbed::arm_of(&robot, ik());
+    let near = bench_of(robot, arm, 0.7, &[([0.6, -0.2], anywhere([0.6, 0.2], 0.3))], &[]);
+    let plan = run(&near, 0, &Budget::unlimited()).unwrap();
+    assert!(plan.segments.iter().all(|s| s.kind != SegmentKind::Drive));
 }

@@ -194,12 +194,6 @@ impl EdgeChecker for ArticleChecker<'_> {
     }
 
     fn describe(&self, obstruction: Obstruction) -> String {
-        match obstruction {
-            Obstruction::Bounds => "a limit of a joint is exceeded".into(),
-            Obstruction::Constraint => "the path constraint is violated".into(),
-            Obstruction::Contact(n) => {
-                self.scene.describe(obstruction).unwrap_or_else(|| format!("contact {n}"))
-            }
-        }
+        self.scene.explain(obstruction, "a limit of a joint")
     }
 }

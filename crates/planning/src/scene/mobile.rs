@@ -131,12 +131,6 @@ impl EdgeChecker for MobileChecker<'_> {
     }
 
     fn describe(&self, obstruction: Obstruction) -> String {
-        match obstruction {
-            Obstruction::Bounds => "a joint limit or the edge of the floor is exceeded".into(),
-            Obstruction::Constraint => "the path constraint is violated".into(),
-            Obstruction::Contact(n) => {
-                self.scene.describe(obstruction).unwrap_or_else(|| format!("contact {n}"))
-            }
-        }
+        self.scene.explain(obstruction, "a joint limit or the edge of the floor")
     }
 }

@@ -192,6 +192,15 @@ impl Scene {
         self.names(obstruction).map(|[one, other]| format!("{one} touches {other}"))
     }
 
+    /// A clause that says what is in the way of a motion; `bounds` names what is exceeded outside of its space.
+    pub(crate) fn explain(&self, obstruction: Obstruction, bounds: &str) -> String {
+        match obstruction {
+            Obstruction::Bounds => format!("{bounds} is exceeded"),
+            Obstruction::Constraint => "the path constraint is violated".into(),
+            Obstruction::Contact(n) => self.describe(obstruction).unwrap_or_else(|| format!("contact {n}")),
+        }
+    }
+
     /// How deep a touching pair is in each other with the robot at `q`, metres; zero when they come too near without touching,
     /// `None` when the obstruction is not a contact of this scene.
     pub fn depth(&self, q: &Configuration, held: Option<&Grip>, obstruction: Obstruction) -> Option<f64> {

@@ -36,5 +36,5 @@ pub(super) fn guess(bodies: &Bodies, kinematics: &Kinematics) -> Base {
         _ => [-half, half, -half, half],
     };
     let footprint = vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
-    Base::Planar { footprint, holonomic: start != 0 }
+    Base::Planar { footprint, holonomic: start != 0, joints: None }
 }

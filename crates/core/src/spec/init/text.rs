@@ -57,7 +57,7 @@ fn base(base: &Base) -> String {
              [base]\nkind = \"fixed\"\n"
         }
         .to_owned(),
-        Base::Planar { footprint, holonomic } => {
+        Base::Planar { footprint, holonomic, .. } => {
             let corners: Vec<String> = footprint.iter().map(|corner| numbers(corner)).collect();
             format!(
                 "\n# It has wheels or planar joints. The outline is the box round the base's shapes: check it.\n\

@@ -1,0 +1,63 @@
+//! The same task from where the gripper can get to the handle.
+
+use super::task::{ArticulatedTask, CagedState};
+use crate::edge::Obstruction;
+use crate::space::Space;
+
+/// A task that begins in one of some given states.
+pub struct StartingAt<'t, T: ?Sized> {
+    task: &'t mut T,
+    starts: &'t [CagedState],
+}
+
+impl<'t, T: ArticulatedTask + ?Sized> StartingAt<'t, T> {
+    /// The same task, at the first step in no other states than `starts`, which must be free.
+    pub fn new(task: &'t mut T, starts: &'t [CagedState]) -> Self {
+        Self { task, starts }
+    }
+}
+
+impl<T: ArticulatedTask + ?Sized> ArticulatedTask for StartingAt<'_, T> {
+    fn arm_space(&self) -> &Space {
+        self.task.arm_space()
+    }
+
+    fn steps(&self) -> usize {
+        self.task.steps()
+    }
+
+    fn grasps(&self) -> usize {
+        self.task.grasps()
+    }
+
+    fn is_contact(&self, grasp: usize) -> bool {
+        self.task.is_contact(grasp)
+    }
+
+    fn adjacent(&self, grasp: usize) -> &[usize] {
+        self.task.adjacent(grasp)
+    }
+
+    fn solutions(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
+        match step {
+            0 => self.starts.iter().filter(|s| s.grasp == grasp).map(|s| s.q.clone()).collect(),
+            _ => self.task.solutions(step, grasp, near),
+        }
+    }
+
+    fn motion(&mut self, from: &CagedState, to: &CagedState) -> Result<(), Obstruction> {
+        self.task.motion(from, to)
+    }
+
+    fn longest_motion(&self) -> f64 {
+        self.task.longest_motion()
+    }
+
+    fn neighbours(&self, step: usize) -> Vec<usize> {
+        self.task.neighbours(step)
+    }
+
+    fn remaining(&self, step: usize) -> usize {
+        self.task.remaining(step)
+    }
+}

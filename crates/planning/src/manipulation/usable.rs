@@ -1,0 +1,94 @@
+//! Which grasps of an object can be used for a goal, asked without planning the free motions in between.
+
+use robotc_core::task::Goal;
+use robotc_core::{Pose, Seed};
+
+use super::destinations::destination_poses;
+use super::options::ManipulationOptions;
+use super::picks::PickSampler;
+use super::placings::Destinations;
+use super::plan::Tried;
+use super::problem::{GoalContext, Manipulation, finger_space, gripper_links};
+use super::rejections::Rejections;
+use crate::budget::{Budget, Interrupt};
+use crate::goal::{GoalDraw, GoalSampler};
+
+/// A grasp for which approach, lift, lowering and retreat are free, each on one branch of inverse kinematics.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UsableGrasp {
+    /// Position in the object's grasp set.
+    pub grasp: usize,
+    /// The arm where the straight approach starts.
+    pub approach: Vec<f64>,
+    /// The arm at the grasp.
+    pub at_grasp: Vec<f64>,
+    /// Where the object can be put with it.
+    pub world_from_object: Pose,
+    /// The arm where the object stands there.
+    pub at_destination: Vec<f64>,
+}
+
+/// What a look for usable grasps found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UsableGrasps {
+    /// In the order in which they were found; a grasp may come once for each branch of inverse kinematics.
+    pub found: Vec<UsableGrasp>,
+    /// How many grasps were looked at.
+    pub tried: Tried,
+    /// Destinations known, and looked at.
+    pub destinations: [usize; 2],
+    /// What each filter rejected.
+    pub rejections: Rejections,
+    /// Whether there are no more.
+    pub exhausted: bool,
+}
+
+/// Looks for the first `most` usable grasps of the object of goal number `goal` of the task, in the order in which planning tries
+/// them (thesis algorithms 3.4 to 3.6). `None` when the goal puts nothing down or the arm has no gripper.
+///
+/// Nothing is computed that the answer does not need: a grasp is looked at when all before it were rejected, a destination when a grasp has
+/// passed everything else.
+pub fn usable_grasps(
+    problem: &Manipulation<'_>,
+    options: &ManipulationOptions,
+    goal: usize,
+    most: usize,
+    budget: &Budget<'_>,
+    seed: Seed,
+) -> Result<Option<UsableGrasps>, Interrupt> {
+    let robot = &*problem.task.robot;
+    let Goal::Place { object, destination, keep_upright } = &problem.task.goals[goal] else {
+        return Ok(None);
+    };
+    let Some(gripper) = robot.arms[problem.task.arm].gripper else { return Ok(None) };
+    let (links, fingers) = (gripper_links(robot, gripper), finger_space(robot, gripper));
+    let cx = GoalContext {
+        problem: *problem,
+        options,
+        number: goal,
+        object: *object,
+        gripper,
+        gripper_links: &links,
+        finger_space: &fingers,
+    };
+    let poses = destination_poses(destination, options.destinations, &mut seed.split("destination").rng());
+    let mut destinations = Destinations::new(poses);
+    let (scene, set, rng) = (problem.scene, problem.grasps[*object], seed.split("grasps").rng());
+    let mut sampler = PickSampler::new(cx, scene, set, &mut destinations, problem.start, *keep_upright, rng);
+    let mut exhausted = false;
+    while sampler.found.len() < most && !exhausted {
+        exhausted = sampler.draw(budget)? == GoalDraw::Exhausted;
+    }
+    let first = |path: &[Vec<f64>]| path[0].clone();
+    let found = sampler.found.iter().map(|pick| UsableGrasp {
+        grasp: pick.grasp,
+        approach: first(&pick.approach),
+        at_grasp: first(&pick.lift),
+        world_from_object: pick.placing.world_from_object,
+        at_destination: first(&pick.placing.retreat),
+    });
+    let found = found.collect();
+    let (tried, rejections) = (sampler.tried(), sampler.rejections.clone());
+    let destinations = sampler.destinations.counts();
+    Ok(Some(UsableGrasps { found, tried, destinations, rejections, exhausted }))
+}
