@@ -50,7 +50,9 @@ pub(crate) fn model(rail: bool) -> RobotModel {
 fn model_on(wheels: bool, rail: bool) -> RobotModel {
     let mut b = RobotBuilder::new("testbed");
     if wheels {
-        ["floor", "along_x", "along_y"].map(|name| b.link(name, vec![], vec![], None));
+        for name in ["floor", "along_x", "along_y"] {
+            b.link(name, vec![], vec![], None);
+        }
         let mut drive = |name: &str, motion, parent: &str, child: &str, axis, range| {
             b.moving(name, motion, parent, child, Origin::default(), axis, limits(range), None);
         };

@@ -226,13 +226,18 @@ fn try_place(
         let seconds = now() - start;
         Attempt { opened, stopped: !opened && seconds > options.seconds, seconds }
     };
-    let randomized = timed(&mut |budget| {
-        restarted_search(&mut caged, &planner.caging_search, budget, Seed::new(options.seed)).is_ok()
-    });
+    let seed = Seed::new(options.seed);
+    let randomized =
+        timed(&mut |budget| restarted_search(&mut caged, &planner.caging_search, budget, seed).is_ok());
+    let redundant = !problem.arm.free_variables().is_empty();
     let (start, mut first, mut firm_grips) = (now(), None, Vec::new());
     let firm = timed(&mut |budget| {
         for grip in (0..cages.len()).filter(|&grip| cages[grip].grasp.contact) {
-            if discrete_search(&mut FixedGrasp::one(&mut caged, grip), budget).is_ok() {
+            let firm = &mut FixedGrasp::one(&mut caged, grip);
+            // Of a redundant arm the steps of its free joints may be too coarse.
+            let opened = discrete_search(firm, budget).is_ok()
+                || (redundant && restarted_search(firm, &planner.caging_search, budget, seed).is_ok());
+            if opened {
                 first.get_or_insert(now() - start);
                 firm_grips.push(grip);
             }
@@ -240,8 +245,7 @@ fn try_place(
         first.is_some()
     });
     let firm = Attempt { seconds: first.unwrap_or(firm.seconds), ..firm };
-    let discrete = (problem.arm.free_variables().is_empty())
-        .then(|| timed(&mut |budget| discrete_search(&mut caged, budget).is_ok()));
+    let discrete = (!redundant).then(|| timed(&mut |budget| discrete_search(&mut caged, budget).is_ok()));
     Some(CagingPlace { x, y, yaw, firm, firm_grips, discrete, randomized })
 }
 

@@ -20,7 +20,10 @@ pub(super) struct Spot {
     pub(super) class: usize,
 }
 
-/// Colours of the classes of a legend and of the bars of a group; told apart by readers who see few colours.
+/// The first class of a map's legend: places where nothing works.
+const GREY: &str = "#a9aeb3";
+
+/// Colours of the other classes of a legend and of the bars of a group; told apart by readers who see few colours.
 const COLOURS: [&str; 6] = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00"];
 
 /// Pixels along each side of a map.
@@ -94,7 +97,7 @@ impl Page {
             let (x, y) = (middle + scale * spot.at[0], middle - scale * spot.at[1]);
             // Several headings of one place stand side by side.
             let (dx, dy) = (9.0 * spot.yaw.cos(), -9.0 * spot.yaw.sin());
-            let colour = COLOURS[spot.class % COLOURS.len()];
+            let colour = of_class(spot.class);
             let _ = writeln!(
                 svg,
                 "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"4\" fill=\"{colour}\"/>\
@@ -106,7 +109,7 @@ impl Page {
         let mut keys = String::new();
         for (class, name) in legend.iter().enumerate() {
             let count = spots.iter().filter(|s| s.class == class).count();
-            let colour = COLOURS[class % COLOURS.len()];
+            let colour = of_class(class);
             let _ = writeln!(
                 keys,
                 "<li><span style=\"background:{colour}\"></span>{}: {count}</li>",
@@ -159,10 +162,15 @@ svg text { font-size: 12px; fill: #333 } svg .group { font-weight: 600 } .map { 
 .ring { fill: none; stroke: #ccc } .robot { fill: #444 }
 .legend { display: inline-block; list-style: none; margin: 0 1em; padding: 0 }
 .legend span { display: inline-block; width: 12px; height: 12px; border-radius: 6px; margin-right: .5em }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums }
+table { border-collapse: collapse; display: block; overflow-x: auto; font-variant-numeric: tabular-nums }
 th, td { padding: .25em .8em; border-bottom: 1px solid #ddd; text-align: right } th:first-child, td:first-child { text-align: left }
 iframe { width: 100%; height: 600px; border: 1px solid #ddd }
 ";
+
+/// The colour of a class on a map.
+fn of_class(class: usize) -> &'static str {
+    class.checked_sub(1).map_or(GREY, |k| COLOURS[(k + 1) % COLOURS.len()])
+}
 
 /// Three digits that count.
 fn number(value: f64) -> String {
