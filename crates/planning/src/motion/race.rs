@@ -16,10 +16,11 @@ use crate::edge::EdgeChecker;
 /// Finds a path from `start` to `goal` by `racers` searches, each with a stream of `seed`; the path of the one that takes the
 /// fewest iterations, the first of equals. A search ends when another one has arrived in fewer.
 ///
-/// There are as many threads as `checkers`, all of the same robot and world. `interrupt` is asked by all searches in every
+/// Each of the `others` has a thread of its own beside the caller's; all checkers are of the same robot and world. `interrupt` is asked by all searches in every
 /// iteration.
 pub fn race_motion<C: EdgeChecker + Send>(
-    checkers: &mut [C],
+    checker: &mut C,
+    others: &mut [C],
     racers: u32,
     start: &[f64],
     goal: &[f64],
@@ -53,11 +54,10 @@ pub fn race_motion<C: EdgeChecker + Send>(
         }
     };
     std::thread::scope(|scope| {
-        let (first, others) = checkers.split_first_mut().expect("a race has a checker");
         for checker in others {
             scope.spawn(|| run(checker));
         }
-        run(first);
+        run(checker);
     });
     match (first_of(arrived), first_of(failed)) {
         (Some(found), _) => Ok(found),
@@ -95,7 +95,8 @@ mod tests {
 
     fn race(threads: usize, racers: u32, goal: [f64; 2], seed: u64) -> Result<MotionPlan, MotionFailure> {
         let options = SearchOptions { max_iterations: 3000, ..SearchOptions::default() };
-        race_motion(&mut toys(threads), racers, &[1.0, 1.0], &goal, &options, &|| None, Seed::new(seed))
+        let (first, others) = (&mut toys(1)[0], &mut toys(threads - 1));
+        race_motion(first, others, racers, &[1.0, 1.0], &goal, &options, &|| None, Seed::new(seed))
     }
 
     #[test]
@@ -119,7 +120,8 @@ mod tests {
         let covered = race(2, 3, [4.5, 1.0], 1);
         assert_eq!(covered, Err(MotionFailure::Goal(Obstruction::Contact(0))));
         let (options, spent) = (SearchOptions::default(), || Some(Interrupt::TimeUp));
-        let stopped = race_motion(&mut toys(2), 2, &[1.0; 2], &[9.0, 1.0], &options, &spent, Seed::new(1));
+        let (first, others) = (&mut toys(1)[0], &mut toys(1));
+        let stopped = race_motion(first, others, 2, &[1.0; 2], &[9.0, 1.0], &options, &spent, Seed::new(1));
         assert_eq!(stopped, Err(MotionFailure::Interrupted(Interrupt::TimeUp, 0)));
     }
 }
