@@ -1,6 +1,6 @@
 //! Scenes for an independent shake test of grasp sets: `cargo run --release -p robotc-kb --example shake_scenes -- OUT TASK...`
 //! writes OUT/TASK.OBJECT.json for each object: the hand with its convex parts, the object with its, and the best
-//! grasps. `xtask/shake/shake.py` runs them in MuJoCo.
+//! grasps, ranked by our own shaking too where the task asks for it. `xtask/shake/shake.py` runs them in MuJoCo.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use robotc_core::model::{Drive, JointMotion};
 use robotc_core::spec::load_task;
 use robotc_core::{Pose, Sources};
 use robotc_kb::kind::{AnyKind, Entry};
-use robotc_kb::kinds::{ConvexParts, GraspSet, parameter_table};
+use robotc_kb::kinds::{ConvexParts, GraspSet, GraspShake, parameter_table, ranked_grasps};
 use robotc_kb::os::OsSystem;
 use robotc_kb::project::{OfGripperAndObject, OfShape};
 use robotc_kb::{Graph, Knowledge, Project, Store, compile};
@@ -24,6 +24,7 @@ const BEST: usize = 20;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     static PARTS: Entry<ConvexParts> = Entry::new();
     static GRASPS: Entry<GraspSet> = Entry::new();
+    static SHAKEN: Entry<GraspShake> = Entry::new();
     let mut args = std::env::args().skip(1);
     let out = PathBuf::from(args.next().ok_or("usage: OUT TASK...")?);
     std::fs::create_dir_all(&out)?;
@@ -33,11 +34,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let (spec, found) = load_task(&OsSystem, &mut sources, Path::new(&path), &parameter_table());
         let Some(spec) = spec else { return Err(format!("{path}: {found:?}").into()) };
         let project = Project::of_task(&spec);
-        let kinds = [&PARTS as &'static dyn AnyKind, &GRASPS];
+        let kinds = [&PARTS as &'static dyn AnyKind, &GRASPS, &SHAKEN];
         let report = compile(&Arc::new(Graph::plan_kinds(&project, &kinds)?), &store, &())?;
         let gripper = spec.task.robot.arms[spec.task.arm].gripper.ok_or("the arm carries a gripper")?;
         for (object, thing) in spec.task.objects.iter().enumerate() {
-            let grasps = report.knowledge.load::<GraspSet>(&OfGripperAndObject { gripper, object })?;
+            let grasps = ranked_grasps(&report.knowledge, &OfGripperAndObject { gripper, object })?;
             let parts = report.knowledge.load::<ConvexParts>(&OfShape::Object(object))?;
             let preshapes = &spec.task.robot.grippers[gripper].preshapes;
             let palm_from_tool = spec.task.robot.grippers[gripper].palm_from_tool;

@@ -5,13 +5,16 @@ mod support;
 use std::sync::Arc;
 
 use robotc_core::Seed;
+use robotc_core::spec::ParameterValue;
 use robotc_kb::kinds::{GraspSet, Reachability};
 use robotc_kb::{Graph, Kind, Store, codec, compile, kinds};
 
 #[test]
 fn decoders_are_total_and_canonical() {
     let folder = tempfile::tempdir().expect("a folder");
-    let graph = Arc::new(Graph::plan(&support::spec_with_door().project()).expect("a graph"));
+    let mut spec = support::spec_with_door();
+    spec.given.set("grasp_shake", "grasps", ParameterValue::Integer(1));
+    let graph = Arc::new(Graph::plan(&spec.project()).expect("a graph"));
     let store = Arc::new(Store::open(folder.path()).expect("a store"));
     assert!(compile(&graph, &store, &()).expect("it works").complete());
     let listed = store.list().expect("a list");

@@ -7,6 +7,9 @@ use std::sync::Arc;
 use robotc_core::Pose;
 use robotc_core::model::{DynamicLimits, Geometry, Shape};
 use robotc_core::spec::ParameterValue;
+use robotc_kb::kind::{AnyKind, Entry};
+use robotc_kb::kinds::{GraspSet, GraspShake, ranked_grasps};
+use robotc_kb::project::OfGripperAndObject;
 use robotc_kb::{Graph, LockFile, Locked, Store, compile};
 use support::Spec;
 
@@ -86,6 +89,7 @@ const EDITS: &[Edit] = &[
             "grasp_set arm/jaws+tidy/mug",
             "link_statistics arm",
             "self_collision_pairs arm",
+            "sphere_cover arm/left",
         ],
         because: "changed: self_collision_pairs of arm",
     },
@@ -98,6 +102,7 @@ const EDITS: &[Edit] = &[
             "link_statistics arm",
             "reachability arm/main",
             "self_collision_pairs arm",
+            "sphere_cover arm/fore",
         ],
         because: "changed: self_collision_pairs of arm",
     },
@@ -129,6 +134,12 @@ const EDITS: &[Edit] = &[
         apply: |s| s.given.set("grasp_set", "rolls", ParameterValue::Integer(4)),
         rebuilt: &["grasp_set arm/jaws+tidy/mug"],
         because: "changed: parameter rolls 8 -> 4",
+    },
+    Edit {
+        name: "shaking asked for",
+        apply: |s| s.given.set("grasp_shake", "grasps", ParameterValue::Integer(1)),
+        rebuilt: &["grasp_shake arm/jaws+tidy/mug"],
+        because: "never computed for this subject",
     },
     Edit { name: "mass of the object", apply: |s| s.object.mass = 1.0, rebuilt: &[], because: "" },
     Edit {
@@ -219,6 +230,35 @@ fn edits_rebuild_exactly_what_reads_them() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Simulations repeat too, and an edit of what they do not read computes none again.
+#[test]
+fn shaken_grasps_repeat_with_any_number_of_threads() {
+    let mut spec = support::spec();
+    spec.given.set("grasp_shake", "grasps", ParameterValue::Integer(4));
+    spec.given.set("grasp_shake", "tries", ParameterValue::Integer(1));
+    let shaken = |threads: usize| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        static SHAKEN: Entry<GraspShake> = Entry::new();
+        let kinds = [&SHAKEN as &'static dyn AnyKind];
+        let graph = Arc::new(Graph::plan_kinds(&spec.project(), &kinds).expect("a graph"));
+        let store = Arc::new(Store::open(folder.path()).expect("a store"));
+        let report = pool.install(|| compile(&graph, &store, &()).expect("it works"));
+        let subject = OfGripperAndObject { gripper: 0, object: 0 };
+        let shaken = report.knowledge.load::<GraspShake>(&subject).expect("it is computed");
+        let ranked = ranked_grasps(&report.knowledge, &subject).expect("they are computed");
+        assert!(ranked.windows(2).all(|pair| pair[0].score >= pair[1].score));
+        let known = report.knowledge.load::<GraspSet>(&subject).expect("it is computed");
+        assert_eq!(ranked.len(), known.len());
+        (*shaken).clone()
+    };
+    let one = shaken(1);
+    assert_eq!(one, shaken(2));
+    // Two frictions, seven pulls.
+    assert_eq!((one.pulls, one.withstood.len()), (14, 4));
+    assert!(one.withstood.iter().any(|&count| count > 7), "{one:?}");
+}
+
 fn copy(from: &std::path::Path, to: &std::path::Path) {
     std::fs::create_dir_all(to).expect("a folder");
     for entry in std::fs::read_dir(from).expect("a folder") {
@@ -269,6 +309,7 @@ fn recipes_are_known_before_anything_is_built_and_reach_through_inputs() {
         .collect();
     let expected = [
         "convex_parts of arm/fore",
+        "sphere_cover of arm/fore",
         "link_statistics of arm",
         "self_collision_pairs of arm",
         "arm_pairs of arm/main",

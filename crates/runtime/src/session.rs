@@ -6,8 +6,8 @@ use robotc_core::task::Task;
 use robotc_core::{Configuration, Kinematics, LinkIdx, LinkPoses, SerialChain, TypedVec, World};
 use robotc_ikgen::Solver;
 use robotc_kb::kinds::{
-    Cage, CagingSet, ConvexParts, GraspSet as GraspSetKind, IkSolver, LinkStatistics, Reachability,
-    ReachabilityMap, SelfCollisionPairs,
+    Cage, CagingSet, ConvexParts, IkSolver, LinkStatistics, Reachability, ReachabilityMap,
+    SelfCollisionPairs, ranked_grasps,
 };
 use robotc_kb::project::{OfArm, OfGripperAndArticle, OfGripperAndObject, OfRobot, OfShape};
 use robotc_kb::{Knowledge, LoadError};
@@ -100,8 +100,8 @@ impl Session {
         for (i, object) in task.objects.iter().enumerate() {
             let set = match robot.arms[task.arm].gripper {
                 Some(gripper) => {
-                    let known = knowledge.load::<GraspSetKind>(&OfGripperAndObject { gripper, object: i })?;
-                    GraspSet::new(&robot.grippers[gripper].name, &object.name, (*known).clone())
+                    let known = ranked_grasps(knowledge, &OfGripperAndObject { gripper, object: i })?;
+                    GraspSet::new(&robot.grippers[gripper].name, &object.name, known)
                 }
                 None => GraspSet::default(),
             };

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
 use robotc_kb::formats::{GraspFile, GraspFormat};
-use robotc_kb::kinds::GraspSet;
+use robotc_kb::kinds::ranked_grasps;
 use robotc_kb::project::OfGripperAndObject;
 
 use super::compile::write_whole;
@@ -47,11 +47,11 @@ enum GraspsCommand {
         #[arg(long, value_name = "N")]
         most: Option<usize>,
     },
-    /// Read a file in one format and write it in the other
+    /// Read a file in one format and write it in another
     Convert {
-        /// `*.yaml` (isaac_grasp) or `*.json` (ACRONYM)
+        /// `*.yaml` (isaac_grasp), `*.json` (ACRONYM) or `*.npz` (numpy)
         from: PathBuf,
-        /// `*.yaml` (isaac_grasp) or `*.json` (ACRONYM)
+        /// The same
         to: PathBuf,
     },
 }
@@ -62,6 +62,8 @@ enum Format {
     Isaac,
     /// The fields of the ACRONYM data set as JSON
     Acronym,
+    /// Arrays of numpy
+    Npz,
 }
 
 impl From<Format> for GraspFormat {
@@ -69,6 +71,7 @@ impl From<Format> for GraspFormat {
         match format {
             Format::Isaac => Self::IsaacGrasp,
             Format::Acronym => Self::Acronym,
+            Format::Npz => Self::Npz,
         }
     }
 }
@@ -85,20 +88,25 @@ pub(crate) fn run(args: &Grasps) -> Outcome {
             };
             let written = file.write(format);
             let Some(path) = output else {
-                print_text(&written);
-                return Ok(());
+                return match String::from_utf8(written) {
+                    Ok(text) => {
+                        print_text(&text);
+                        Ok(())
+                    }
+                    Err(_) => Err(Failure::Input("arrays go into a file: give -o FILE.npz".into())),
+                };
             };
-            write_whole(path, written.as_bytes())?;
+            write_whole(path, &written)?;
             print(&format!("{}: {}", path.display(), count(file.grasps.len(), "grasp")));
             Ok(())
         }
         GraspsCommand::Convert { from, to } => {
             let (read_as, write_as) = (format_of(from)?, format_of(to)?);
-            let read = std::fs::read_to_string(from)
+            let read = std::fs::read(from)
                 .map_err(|error| Failure::Environment(format!("{}: {error}", from.display())))?;
             let file = GraspFile::read(&read, read_as)
                 .map_err(|error| Failure::Input(format!("{}: {error}", from.display())))?;
-            write_whole(to, file.write(write_as).as_bytes())?;
+            write_whole(to, &file.write(write_as))?;
             print(&format!("{}: {}", to.display(), count(file.grasps.len(), "grasp")));
             Ok(())
         }
@@ -124,9 +132,7 @@ fn exported(args: &Grasps, path: &Path, object: &str, gripper: Option<&str>) -> 
     };
     let graph = knowledge::plan(&robotc_kb::Project::of_task(&spec))?;
     let report = knowledge::compile(&graph, &args.store.open()?)?;
-    let grasps = report
-        .knowledge
-        .load::<GraspSet>(&OfGripperAndObject { gripper: index, object: position })
+    let grasps = ranked_grasps(&report.knowledge, &OfGripperAndObject { gripper: index, object: position })
         .map_err(|error| Failure::Environment(error.to_string()))?;
     Ok(GraspFile::of(object, robot, &robot.grippers[index], &grasps))
 }
@@ -135,8 +141,9 @@ fn format_of(path: &Path) -> Outcome<GraspFormat> {
     match path.extension().and_then(|e| e.to_str()) {
         Some("yaml" | "yml") => Ok(GraspFormat::IsaacGrasp),
         Some("json") => Ok(GraspFormat::Acronym),
+        Some("npz") => Ok(GraspFormat::Npz),
         _ => Err(Failure::Input(format!(
-            "{}: the format of grasps is told by the ending: .yaml (isaac_grasp) or .json (ACRONYM)",
+            "{}: the format of grasps is told by the ending: .yaml (isaac_grasp), .json (ACRONYM) or .npz (numpy)",
             path.display()
         ))),
     }

@@ -1,4 +1,4 @@
-//! `robotc view`: artefacts as pages to look at.
+//! `robotc view`: artefacts as pages and pictures to look at.
 
 use std::path::PathBuf;
 
@@ -11,10 +11,14 @@ use crate::knowledge::{self, StoreArgs};
 use crate::output::{Failure, Outcome, say};
 use crate::settings::Settings;
 
-/// Draw artefacts of a specification: a 3-D page, or a plot of what lies in a plane
+/// Width and height of a still picture, pixels.
+const STILL: [u32; 2] = [1200, 800];
+
+/// Draw artefacts of a specification: a 3-D page, a still picture, or a plot of what lies in a plane
 #[derive(Args)]
 #[command(after_help = "Examples:\n  robotc view mug.task.toml grasp_set -o grasps.html\n  \
     robotc view arm.robot.toml convex_parts forearm -o forearm.html\n  \
+    robotc view arm.robot.toml sphere_cover -o cover.svg\n  \
     robotc view mug.task.toml base_placement mug -o bases.svg\n\n\
     What is missing is compiled first. The page opens offline in any browser.")]
 pub(crate) struct View {
@@ -24,7 +28,7 @@ pub(crate) struct View {
     kind: String,
     /// Only those whose subject contains this
     subject: Option<String>,
-    /// Write a 3-D page, or an SVG plot of reachability or base_placement
+    /// Write a 3-D page; as SVG a plot of reachability or base_placement, a still picture of the others
     #[arg(long, short, value_name = "FILE.html|svg")]
     output: Option<PathBuf>,
     /// Write binary glTF
@@ -52,32 +56,36 @@ pub(crate) fn run(args: &View) -> Outcome {
     let graph = knowledge::plan(&crate::input::project(&args.file, &args.settings)?)?;
     let compiled = knowledge::compile(&graph, &args.store.open()?)?;
     let subject = args.subject.as_deref().unwrap_or_default();
-    let (plots, pages): (Vec<&PathBuf>, Vec<&PathBuf>) =
-        args.output.iter().partition(|path| path.extension().is_some_and(|end| end == "svg"));
-    for path in plots {
-        let panels = picture::plot(&compiled.knowledge, &args.kind, subject)
-            .map_err(|error| Failure::Input(error.to_string()))?
-            .ok_or_else(|| Failure::Input(no_plot(&args.kind)))?;
-        write_whole(path, picture::plot::svg(&panels).as_bytes())?;
+    let drawn = |error: picture::NoPicture| Failure::Input(error.to_string());
+    let still = args.output.as_ref().filter(|path| path.extension().is_some_and(|end| end == "svg"));
+    // What lies in a plane is plotted there; the rest is seen as a page first shows it.
+    let panels = match still {
+        Some(_) => picture::plot(&compiled.knowledge, &args.kind, subject).map_err(drawn)?,
+        None => None,
+    };
+    if let (Some(path), Some(panels)) = (still, &panels) {
+        write_whole(path, picture::plot::svg(panels).as_bytes())?;
         say(&format!("wrote {}", path.display()));
+        if args.glb.is_none() {
+            return Ok(());
+        }
     }
-    if pages.is_empty() && args.glb.is_none() {
-        return Ok(());
-    }
-    let recording = picture(&compiled.knowledge, &args.kind, subject)
-        .map_err(|error| Failure::Input(error.to_string()))?;
-    for path in pages {
-        write_whole(path, view::html(&recording).as_bytes())?;
-        say(&format!("wrote {}; open it in a browser", path.display()));
+    let recording = picture(&compiled.knowledge, &args.kind, subject).map_err(drawn)?;
+    match (still, &args.output) {
+        (Some(path), _) if panels.is_none() => {
+            let text = view::svg(&recording, view::telling_moment(&recording), STILL);
+            write_whole(path, text.as_bytes())?;
+            say(&format!("wrote {}", path.display()));
+        }
+        (None, Some(path)) => {
+            write_whole(path, view::html(&recording).as_bytes())?;
+            say(&format!("wrote {}; open it in a browser", path.display()));
+        }
+        _ => {}
     }
     if let Some(path) = &args.glb {
         write_whole(path, &view::glb(&recording))?;
         say(&format!("wrote {}", path.display()));
     }
     Ok(())
-}
-
-fn no_plot(kind: &str) -> String {
-    let kinds: Vec<&str> = picture::PLOTS.iter().map(|(name, _)| *name).collect();
-    format!("{kind} does not lie in a plane: plots are of {}; write it as FILE.html", kinds.join(" and "))
 }

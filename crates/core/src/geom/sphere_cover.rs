@@ -4,9 +4,9 @@
 //! the shape, the ball of the inner radius is inside the shape. A shape whose outer balls touch nothing is free; one of
 //! whose inner balls touches something is not.
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
-use super::{ConvexPart, ConvexParts};
+use super::{Aabb, ConvexPart, ConvexParts};
 
 mod net;
 mod tree;
@@ -111,6 +111,26 @@ impl SphereCover {
             |leaf: &SphereNode| if leaf.inner > 0.0 { leaf.outer - leaf.inner } else { 2.0 * leaf.outer };
         self.leaves().map(of).fold(0.0, f64::max)
     }
+
+    /// How many times the volume of the shape the cover has, by a lattice of `across` points along each side of the box around
+    /// the cover; 1 for an empty shape.
+    pub fn swelling(&self, parts: &ConvexParts, across: usize) -> f64 {
+        let balls = self.leaves().flat_map(|leaf| {
+            let reach = Vector3::repeat(leaf.outer);
+            [leaf.centre - reach, leaf.centre + reach]
+        });
+        let Some(bounds) = Aabb::of_points(&balls.collect::<Vec<_>>()) else { return 1.0 };
+        let corner = bounds.centre() - 0.5 * bounds.size();
+        let (mut in_cover, mut in_shape) = (0_usize, 0_usize);
+        for i in 0..across * across * across {
+            let cell = [i % across, i / across % across, i / across / across];
+            let share = Vector3::from(cell.map(|k| (k as f64 + 0.5) / across as f64));
+            let point = corner + bounds.size().component_mul(&share);
+            in_cover += usize::from(self.contains(&point));
+            in_shape += usize::from(parts.contains(&point));
+        }
+        if in_shape == 0 { 1.0 } else { in_cover as f64 / in_shape as f64 }
+    }
 }
 
 /// A leaf before it has a place in the tree.
@@ -132,7 +152,6 @@ mod tests {
     use super::*;
     use crate::Pose;
     use crate::rng::Seed;
-    use nalgebra::Vector3;
 
     fn shapes() -> Vec<ConvexParts> {
         let mut rng = Seed::new(5).rng();
@@ -176,6 +195,9 @@ mod tests {
             let radius = parts.iter().map(|p| p.bounding_sphere().1).fold(0.0, f64::max);
             // A ball whose centre is outside counts twice; looking at some of many faces only costs a little more.
             assert!(cover.overshoot() <= 2.0 * 0.065 * radius + 1e-9, "{} of {radius}", cover.overshoot());
+            let swelling = cover.swelling(&parts, 20);
+            let thin = parts.bounds().unwrap().size().min() < 0.01;
+            assert!(swelling >= 1.0 && (thin || swelling < 1.6), "{swelling}");
             for leaf in cover.leaves() {
                 let p = leaf.centre + rng.direction().into_inner() * (leaf.inner * 0.999);
                 assert!(leaf.inner == 0.0 || parts.contains(&p));

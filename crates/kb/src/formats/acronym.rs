@@ -1,10 +1,8 @@
 //! The fields of the ACRONYM data set as JSON: 4 x 4 transforms of the gripper in the object's frame, and whether each holds.
 
-use nalgebra::{Matrix3, Rotation3, Translation3, UnitQuaternion};
-use robotc_core::Pose;
 use serde::{Deserialize, Serialize};
 
-use super::{FileGrasp, FormatError, GraspFile};
+use super::{FileGrasp, FormatError, GraspFile, pose_of_rows, rows_of_pose};
 
 #[derive(Serialize, Deserialize)]
 struct File {
@@ -51,7 +49,7 @@ pub(super) fn read(text: &str) -> Result<GraspFile, FormatError> {
     }
     let grasp = |(i, rows): (usize, &[[f64; 4]; 4])| {
         let object_from_gripper =
-            pose(rows).ok_or_else(|| wrong(format!("transform {i} is not a rigid motion")))?;
+            pose_of_rows(rows).ok_or_else(|| wrong(format!("transform {i} is not a rigid motion")))?;
         let confidence = qualities.get(i).copied().unwrap_or(1.0);
         Ok(FileGrasp { object_from_gripper, closed: Vec::new(), open: Vec::new(), confidence })
     };
@@ -61,10 +59,7 @@ pub(super) fn read(text: &str) -> Result<GraspFile, FormatError> {
 }
 
 pub(super) fn write(file: &GraspFile) -> String {
-    let rows = |g: &FileGrasp| {
-        let matrix = g.object_from_gripper.to_homogeneous();
-        std::array::from_fn(|row| std::array::from_fn(|column| matrix[(row, column)]))
-    };
+    let rows = |g: &FileGrasp| rows_of_pose(&g.object_from_gripper);
     let file = File {
         object: Object { file: file.object.clone(), scale: 1.0 },
         gripper: Gripper { link: file.gripper_link.clone() },
@@ -74,19 +69,4 @@ pub(super) fn write(file: &GraspFile) -> String {
         },
     };
     serde_json::to_string(&file).expect("numbers and texts are JSON") + "\n"
-}
-
-/// The pose of a transform by rows; `None` when it is none, to single precision.
-fn pose(rows: &[[f64; 4]; 4]) -> Option<Pose> {
-    if !rows.iter().flatten().all(|x| x.is_finite()) {
-        return None;
-    }
-    let matrix = Matrix3::from_fn(|row, column| rows[row][column]);
-    let rigid = (matrix.transpose() * matrix - Matrix3::identity()).abs().max() < 1e-4;
-    if !rigid || matrix.determinant() < 0.0 || rows[3] != [0.0, 0.0, 0.0, 1.0] {
-        return None;
-    }
-    let place = [rows[0][3], rows[1][3], rows[2][3]];
-    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix));
-    Some(Pose::from_parts(Translation3::from(place), rotation))
 }

@@ -5,7 +5,10 @@
 
 mod acronym;
 mod isaac_grasp;
+mod npy;
+mod npz;
 
+use nalgebra::{Matrix3, Rotation3, Translation3, UnitQuaternion};
 use robotc_core::robot::Robot;
 use robotc_core::{Gripper, Pose};
 use robotc_planning::grasp::Grasp;
@@ -44,6 +47,8 @@ pub enum GraspFormat {
     IsaacGrasp,
     /// The fields of the ACRONYM data set (Eppner, Mousavian and Fox 2021) as JSON.
     Acronym,
+    /// Arrays of numpy.
+    Npz,
 }
 
 /// Why a text is not a file of grasps.
@@ -72,26 +77,53 @@ impl GraspFile {
         }
     }
 
-    /// The text in a format. What the format cannot say is left out: ACRONYM has one width for the fingers, and no joint names.
-    pub fn write(&self, format: GraspFormat) -> String {
+    /// The bytes of a file in a format. What the format cannot say is left out: ACRONYM has one width for the fingers, and no joint
+    /// names.
+    pub fn write(&self, format: GraspFormat) -> Vec<u8> {
         match format {
-            GraspFormat::IsaacGrasp => isaac_grasp::write(self),
-            GraspFormat::Acronym => acronym::write(self),
+            GraspFormat::IsaacGrasp => isaac_grasp::write(self).into_bytes(),
+            GraspFormat::Acronym => acronym::write(self).into_bytes(),
+            GraspFormat::Npz => npz::write(self),
         }
     }
 
-    /// Reads a text.
-    pub fn read(text: &str, format: GraspFormat) -> Result<Self, FormatError> {
+    /// Reads the bytes of a file.
+    pub fn read(bytes: &[u8], format: GraspFormat) -> Result<Self, FormatError> {
+        let text = |format| {
+            let wrong = |_| FormatError { format, reason: "it is not text in UTF-8".into() };
+            std::str::from_utf8(bytes).map_err(wrong)
+        };
         match format {
-            GraspFormat::IsaacGrasp => isaac_grasp::read(text),
-            GraspFormat::Acronym => acronym::read(text),
+            GraspFormat::IsaacGrasp => isaac_grasp::read(text("isaac_grasp")?),
+            GraspFormat::Acronym => acronym::read(text("ACRONYM")?),
+            GraspFormat::Npz => npz::read(bytes),
         }
     }
 }
 
+/// The pose of a transform by rows; `None` when it is none, to single precision.
+fn pose_of_rows(rows: &[[f64; 4]; 4]) -> Option<Pose> {
+    if !rows.iter().flatten().all(|x| x.is_finite()) {
+        return None;
+    }
+    let matrix = Matrix3::from_fn(|row, column| rows[row][column]);
+    let rigid = (matrix.transpose() * matrix - Matrix3::identity()).abs().max() < 1e-4;
+    if !rigid || matrix.determinant() < 0.0 || rows[3] != [0.0, 0.0, 0.0, 1.0] {
+        return None;
+    }
+    let place = [rows[0][3], rows[1][3], rows[2][3]];
+    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix));
+    Some(Pose::from_parts(Translation3::from(place), rotation))
+}
+
+/// The transform of a pose, by rows.
+fn rows_of_pose(pose: &Pose) -> [[f64; 4]; 4] {
+    let matrix = pose.to_homogeneous();
+    std::array::from_fn(|row| std::array::from_fn(|column| matrix[(row, column)]))
+}
+
 #[cfg(test)]
 mod tests {
-    use nalgebra::Translation3;
     use robotc_core::Seed;
 
     use super::*;
@@ -140,12 +172,24 @@ mod tests {
     }
 
     #[test]
+    fn arrays_come_back_whole() {
+        let file = some();
+        let back = GraspFile::read(&file.write(GraspFormat::Npz), GraspFormat::Npz).unwrap();
+        assert_poses_agree(&file, &back);
+        assert_eq!((&back.object, &back.gripper_link), (&file.object, &file.gripper_link));
+        assert_eq!(back.joints, file.joints);
+        assert!(back.grasps.iter().all(|g| g.closed == [0.012, 1e-9] && g.open == [0.04, 0.04]));
+        let none = GraspFile { grasps: Vec::new(), ..file };
+        assert_eq!(GraspFile::read(&none.write(GraspFormat::Npz), GraspFormat::Npz), Ok(none));
+    }
+
+    #[test]
     fn files_of_others_are_read_and_broken_ones_refused() {
         let isaac = "format: isaac_grasp\nformat_version: 1.0\nobject_frame_link: /World/mug\n\
             gripper_frame_link: /World/hand\ngrasps:\n  grasp_1:\n    confidence: 0.5\n    position: [0, 0, 0.1]\n    \
             orientation: {w: 2.0, xyz: [0, 0, 0]}\n    cspace_position: {finger: 0.02}\n    \
             pregrasp_cspace_position: {finger: 0.04}\n";
-        let file = GraspFile::read(isaac, GraspFormat::IsaacGrasp).unwrap();
+        let file = GraspFile::read(isaac.as_bytes(), GraspFormat::IsaacGrasp).unwrap();
         assert_eq!((file.joints.len(), file.grasps[0].closed[0]), (1, 0.02));
         assert_eq!(file.grasps[0].object_from_gripper, Pose::translation(0.0, 0.0, 0.1));
         for broken in [
@@ -156,8 +200,8 @@ mod tests {
             &isaac.replace("0.1]", ".nan]"),
             "{\"grasps\": {\"transforms\": [[[1]]]}}",
         ] {
-            assert!(GraspFile::read(broken, GraspFormat::IsaacGrasp).is_err(), "{broken}");
-            assert!(GraspFile::read(broken, GraspFormat::Acronym).is_err(), "{broken}");
+            assert!(GraspFile::read(broken.as_bytes(), GraspFormat::IsaacGrasp).is_err(), "{broken}");
+            assert!(GraspFile::read(broken.as_bytes(), GraspFormat::Acronym).is_err(), "{broken}");
         }
     }
 }

@@ -5,21 +5,25 @@ mod caging_set;
 mod chain_reach;
 mod convex_parts;
 mod grasp_set;
+mod grasp_shake;
 mod grip;
 mod ik_solver;
 mod link_statistics;
 pub mod reachability;
 mod self_collision_pairs;
+mod sphere_cover;
 
 pub use arm_pairs::{ArmPairs, LinkPairs};
 pub use caging_set::{Cage, CageHold, CagingParameters, CagingSet};
 pub use chain_reach::{ChainReach, ReachSphere};
 pub use convex_parts::{ConvexParts, ConvexPartsParameters};
 pub use grasp_set::{GraspParameters, GraspSet};
+pub use grasp_shake::{GraspShake, ShakeParameters, Shaken, ranked_grasps};
 pub use ik_solver::{IkParameters, IkSolver};
 pub use link_statistics::{JointStatistics, LinkStatistics, StatisticsParameters};
 pub use reachability::{Reachability, ReachabilityMap, ReachabilityParameters};
 pub use self_collision_pairs::{PairParameters, PairState, PairTable, SelfCollisionPairs};
+pub use sphere_cover::{CoverParameters, SphereCover};
 
 use robotc_core::spec::{KindParameters, ParameterTable};
 
@@ -29,12 +33,14 @@ use crate::kind::{AnyKind, Entry};
 pub const ALL: &[&dyn AnyKind] = &[
     &Entry::<ChainReach>::new(),
     &Entry::<ConvexParts>::new(),
+    &Entry::<SphereCover>::new(),
     &Entry::<IkSolver>::new(),
     &Entry::<LinkStatistics>::new(),
     &Entry::<SelfCollisionPairs>::new(),
     &Entry::<ArmPairs>::new(),
     &Entry::<Reachability>::new(),
     &Entry::<GraspSet>::new(),
+    &Entry::<GraspShake>::new(),
     &Entry::<CagingSet>::new(),
 ];
 

@@ -11,6 +11,7 @@ mod link_statistics;
 mod palette;
 pub mod plot;
 mod reachability;
+mod sphere_cover;
 
 use robotc_core::model::LinkPoses;
 use robotc_core::{Configuration, Kinematics};
@@ -32,6 +33,7 @@ pub const KINDS: &[(&str, Draw)] = &[
     ("grasp_set", grasp_set::draw),
     ("link_statistics", link_statistics::draw),
     ("reachability", reachability::draw),
+    ("sphere_cover", sphere_cover::draw),
 ];
 
 /// Plots the artefacts of a kind, each as one or more panels.

@@ -49,6 +49,14 @@ impl Camera {
         camera
     }
 
+    /// The camera of a picture of this width and height without controls, from the side from which a page opens.
+    pub(super) fn still(recording: &Recording, [width, height]: [f64; 2]) -> Still {
+        let [left, top, bottom] = TAKEN_WIDE;
+        // The free part of a picture that is larger by the controls; wide ones have theirs at these places.
+        let camera = Self::opening(recording, [width.max(NARROW) + left, height + top + bottom]);
+        Still { camera, corner: [left + 0.5 * (width.max(NARROW) - width), top] }
+    }
+
     /// The part of the picture that no control covers.
     fn free(&self) -> Free {
         let [width, height] = self.size;
@@ -78,6 +86,27 @@ impl Camera {
         let x = from_eye.dot(&right) * scale + middle_x * width / 2.0;
         let y = from_eye.dot(&up) * scale + middle_y * height / 2.0;
         (ahead > 0.0).then_some([width / 2.0 + x, height / 2.0 - y])
+    }
+}
+
+/// A camera, and where in its picture a smaller one begins.
+pub(super) struct Still {
+    camera: Camera,
+    corner: [f64; 2],
+}
+
+impl Still {
+    /// Where a point is seen, pixels from left and top, and its distance from the plane of the eye; `None` behind the eye.
+    pub(super) fn see(&self, p_in_world: &Point3<f64>) -> Option<[f64; 3]> {
+        let [x, y] = self.camera.project(p_in_world)?;
+        let back = self.back();
+        let depth = self.camera.distance - (p_in_world - self.camera.target).dot(&back);
+        Some([x - self.corner[0], y - self.corner[1], depth])
+    }
+
+    /// Direction towards the eye, in the world.
+    pub(super) fn back(&self) -> Vector3<f64> {
+        self.camera.axes()[2]
     }
 }
 

@@ -261,49 +261,10 @@ fn distinct(candidates: Vec<Candidate>) -> Vec<Candidate> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Arc;
+    use crate::kinds::grip::jaws::jaws;
 
     use nalgebra::Vector3;
     use robotc_core::geom::box_part;
-    use robotc_core::ids::Idx;
-    use robotc_core::model::{DynamicLimits, JointMotion, Kinematics, Origin, RobotBuilder};
-    use robotc_core::robot::{Gripper, Preshape};
-    use robotc_core::{DofIdx, LinkIdx, Pose};
-
-    /// A palm with two jaws that open to 80 mm; the second follows the first.
-    fn jaws() -> (Kinematics, Gripper, Vec<(LinkIdx, ConvexParts)>) {
-        let mut b = RobotBuilder::new("jaws");
-        b.link("palm", vec![], vec![], None).link("left", vec![], vec![], None).link(
-            "right",
-            vec![],
-            vec![],
-            None,
-        );
-        let limits = (0.0, 0.04, false, DynamicLimits::DEFAULT);
-        let slide = JointMotion::Prismatic;
-        b.moving("left", slide, "palm", "left", Origin::default(), [0.0, 1.0, 0.0], limits, None);
-        let follow = Some(("left".to_owned(), 1.0, 0.0));
-        b.moving("right", slide, "palm", "right", Origin::default(), [0.0, -1.0, 0.0], limits, follow);
-        let model = Arc::new(b.build().unwrap());
-        let pad =
-            |y: f64| box_part(Vector3::new(0.02, 0.01, 0.05)).transformed(&Pose::translation(0.0, y, 0.075));
-        let parts = vec![
-            (LinkIdx::new(0), ConvexParts::new(vec![box_part(Vector3::new(0.06, 0.2, 0.1))])),
-            (LinkIdx::new(1), ConvexParts::new(vec![pad(0.005)])),
-            (LinkIdx::new(2), ConvexParts::new(vec![pad(-0.005)])),
-        ];
-        let gripper = Gripper {
-            name: "jaws".into(),
-            palm: LinkIdx::new(0),
-            palm_from_tool: Pose::translation(0.0, 0.0, 0.09),
-            approach_in_tool: Vector3::z_axis(),
-            dofs: vec![DofIdx::new(0)],
-            closing: vec![-1.0],
-            fingers: vec![LinkIdx::new(1), LinkIdx::new(2)],
-            preshapes: vec![Preshape { name: "open".into(), values: vec![0.04] }],
-        };
-        (Kinematics::new(model), gripper, parts)
-    }
 
     fn options() -> GenerateOptions {
         GenerateOptions {

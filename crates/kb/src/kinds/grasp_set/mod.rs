@@ -9,6 +9,8 @@ mod generate;
 mod steadiness;
 mod stored;
 
+#[cfg(feature = "build")]
+pub(crate) use build::centre_of_volume;
 use robotc_planning::grasp::Grasp;
 
 use crate::codec;
@@ -295,7 +297,7 @@ mod build {
     }
 
     /// Centre of the volume of the parts: the centre of mass where the density is the same everywhere.
-    fn centre_of_volume(parts: &geom::ConvexParts) -> Point3<f64> {
+    pub(crate) fn centre_of_volume(parts: &geom::ConvexParts) -> Point3<f64> {
         let (mut volume, mut moment) = (0.0, Vector3::zeros());
         for part in parts {
             let points = part.points();

@@ -4,6 +4,8 @@
 pub(crate) mod advance;
 #[cfg(feature = "build")]
 pub(crate) mod hand;
+#[cfg(all(test, feature = "build"))]
+pub(crate) mod jaws;
 #[cfg(feature = "build")]
 pub(crate) mod strategy;
 #[cfg(feature = "build")]

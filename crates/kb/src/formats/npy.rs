@@ -1,0 +1,224 @@
+//! Arrays in an archive, as `numpy.savez` writes and `numpy.load` reads it: a ZIP file of NPY files, nothing compressed.
+
+use std::ops::Range;
+
+/// An array of an archive.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Array {
+    /// Numbers in rows: the last index runs fastest.
+    Numbers { shape: Vec<usize>, values: Vec<f64> },
+    /// Texts in a row; one alone may have no index.
+    Texts(Vec<String>),
+}
+
+const LOCAL: u32 = 0x0403_4b50;
+const CENTRAL: u32 = 0x0201_4b50;
+const END: u32 = 0x0605_4b50;
+/// First of January 1980, the first day that ZIP knows: archives of equal arrays are equal.
+const NO_DATE: u16 = 0x0021;
+
+/// An archive of named arrays.
+pub(super) fn write(arrays: &[(&str, Array)]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut directory = Vec::new();
+    for (name, array) in arrays {
+        let (name, content) = (format!("{name}.npy"), npy(array));
+        let offset = bytes.len() as u32;
+        let mut about = Vec::new();
+        // Version 2.0, no flags, stored.
+        for word in [20, 0, 0, 0, NO_DATE] {
+            about.extend(word.to_le_bytes());
+        }
+        for word in [crc32(&content), content.len() as u32, content.len() as u32] {
+            about.extend(word.to_le_bytes());
+        }
+        about.extend((name.len() as u16).to_le_bytes());
+        about.extend(0_u16.to_le_bytes());
+        bytes.extend(LOCAL.to_le_bytes());
+        bytes.extend(&about);
+        bytes.extend(name.as_bytes());
+        bytes.extend(content);
+        directory.extend(CENTRAL.to_le_bytes());
+        directory.extend(20_u16.to_le_bytes());
+        directory.extend(&about);
+        // No comment, first disk, no attributes.
+        directory.extend([0; 10]);
+        directory.extend(offset.to_le_bytes());
+        directory.extend(name.as_bytes());
+    }
+    let (start, count) = (bytes.len() as u32, arrays.len() as u16);
+    bytes.extend(&directory);
+    bytes.extend(END.to_le_bytes());
+    bytes.extend([0; 4]);
+    bytes.extend(count.to_le_bytes());
+    bytes.extend(count.to_le_bytes());
+    bytes.extend((directory.len() as u32).to_le_bytes());
+    bytes.extend(start.to_le_bytes());
+    bytes.extend([0; 2]);
+    bytes
+}
+
+/// The arrays of an archive with their names; the error says what is wrong with it.
+pub(super) fn read(bytes: &[u8]) -> Result<Vec<(String, Array)>, String> {
+    let short = || "it ends early".to_owned();
+    let is_end = |at: &usize| u32_at(bytes, *at) == Some(END);
+    let end = (0..bytes.len().saturating_sub(21)).rev().find(is_end).ok_or("it is not a ZIP file")?;
+    let count = u16_at(bytes, end + 10).ok_or_else(short)?;
+    let mut at = u32_at(bytes, end + 16).ok_or_else(short)? as usize;
+    let mut arrays = Vec::new();
+    for _ in 0..count {
+        if u32_at(bytes, at) != Some(CENTRAL) {
+            return Err("its directory is damaged".into());
+        }
+        let word = |offset: usize| u16_at(bytes, at + offset).map(usize::from).ok_or_else(short);
+        let double = |offset: usize| u32_at(bytes, at + offset).map(|x| x as usize).ok_or_else(short);
+        let (name_length, behind) = (word(28)?, word(30)? + word(32)?);
+        let name = slice(bytes, at + 46, name_length).ok_or_else(short)?;
+        let name = String::from_utf8_lossy(name).trim_end_matches(".npy").to_owned();
+        if word(10)? != 0 {
+            return Err(format!("{name} is compressed; write it with numpy.savez"));
+        }
+        let (local, length) = (double(42)?, double(24)?);
+        let skipped = |offset: usize| {
+            local.checked_add(offset).and_then(|at| u16_at(bytes, at)).map(usize::from).ok_or_else(short)
+        };
+        let start = local + 30 + skipped(26)? + skipped(28)?;
+        let content = slice(bytes, start, length).ok_or_else(short)?;
+        arrays.push((name.clone(), of_npy(content).map_err(|wrong| format!("{name}: {wrong}"))?));
+        at += 46 + name_length + behind;
+    }
+    Ok(arrays)
+}
+
+fn slice(bytes: &[u8], start: usize, length: usize) -> Option<&[u8]> {
+    bytes.get(Range { start, end: start.checked_add(length)? })
+}
+
+fn u16_at(bytes: &[u8], at: usize) -> Option<u16> {
+    Some(u16::from_le_bytes(slice(bytes, at, 2)?.try_into().ok()?))
+}
+
+fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
+    Some(u32::from_le_bytes(slice(bytes, at, 4)?.try_into().ok()?))
+}
+
+/// An array as an NPY file.
+fn npy(array: &Array) -> Vec<u8> {
+    let (kind, shape, data): (String, Vec<usize>, Vec<u8>) = match array {
+        Array::Numbers { shape, values } => {
+            ("f8".into(), shape.clone(), values.iter().flat_map(|x| x.to_le_bytes()).collect())
+        }
+        Array::Texts(texts) => {
+            let longest = texts.iter().map(|text| text.chars().count()).max().unwrap_or(0).max(1);
+            let padded = |text: &String| {
+                let characters = text.chars().map(u32::from).chain(std::iter::repeat(0));
+                characters.take(longest).flat_map(u32::to_le_bytes).collect::<Vec<u8>>()
+            };
+            (format!("U{longest}"), vec![texts.len()], texts.iter().flat_map(padded).collect())
+        }
+    };
+    let sides: String = shape.iter().map(|side| format!("{side}, ")).collect();
+    let head = format!("{{'descr': '<{kind}', 'fortran_order': False, 'shape': ({}), }}", sides.trim_end());
+    // Data begins at a multiple of 64.
+    let length = (10 + head.len() + 1).next_multiple_of(64) - 10;
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((length as u16).to_le_bytes());
+    bytes.extend(format!("{head:<width$}\n", width = length - 1).into_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+/// The array of an NPY file.
+fn of_npy(bytes: &[u8]) -> Result<Array, String> {
+    let header = match bytes {
+        [0x93, b'N', b'U', b'M', b'P', b'Y', 1, _, ..] => u16_at(bytes, 8).map(|n| (10, usize::from(n))),
+        [0x93, b'N', b'U', b'M', b'P', b'Y', 2 | 3, _, ..] => u32_at(bytes, 8).map(|n| (12, n as usize)),
+        _ => None,
+    };
+    let (start, length) = header.ok_or("it is not an NPY file")?;
+    let head = String::from_utf8_lossy(slice(bytes, start, length).ok_or("it ends early")?);
+    let after = |key: &str| head.split_once(&format!("'{key}':")).map(|(_, rest)| rest.trim_start());
+    let kind = after("descr").and_then(|rest| rest.split('\'').nth(1)).ok_or("it has no type")?;
+    let shape = after("shape").and_then(|rest| rest.strip_prefix('(')?.split(')').next());
+    let sides = shape.ok_or("it has no shape")?.split(',').map(str::trim).filter(|side| !side.is_empty());
+    let shape: Vec<usize> = sides.map(str::parse).collect::<Result<_, _>>().map_err(|_| "it has no shape")?;
+    if shape.len() > 1 && after("fortran_order").is_some_and(|rest| rest.starts_with("True")) {
+        return Err("its first index runs fastest; write it with order=\"C\"".into());
+    }
+    let data = &bytes[start + length..];
+    let count =
+        shape.iter().try_fold(1_usize, |all, &side| all.checked_mul(side)).ok_or("it is too large")?;
+    let of = |width: usize| {
+        let whole = count.checked_mul(width).filter(|&all| all <= data.len());
+        whole.map(|all| data[..all].chunks_exact(width.max(1))).ok_or("it ends early")
+    };
+    match kind.strip_prefix('<') {
+        Some("f8") => {
+            let number = |b: &[u8]| f64::from_le_bytes(b.try_into().expect("chunks of 8"));
+            Ok(Array::Numbers { values: of(8)?.map(number).collect(), shape })
+        }
+        Some("f4") => {
+            let number = |b: &[u8]| f64::from(f32::from_le_bytes(b.try_into().expect("chunks of 4")));
+            Ok(Array::Numbers { values: of(4)?.map(number).collect(), shape })
+        }
+        Some(text) if text.starts_with('U') => {
+            let longest: usize = text[1..].parse().map_err(|_| "its type is unknown")?;
+            let width =
+                longest.checked_mul(4).filter(|&width| width > 0).ok_or("its texts have no length")?;
+            let one = |b: &[u8]| {
+                let codes = b.chunks_exact(4).map(|c| u32::from_le_bytes(c.try_into().expect("chunks of 4")));
+                codes
+                    .take_while(|&code| code != 0)
+                    .map(|code| char::from_u32(code).unwrap_or('\u{fffd}'))
+                    .collect()
+            };
+            Ok(Array::Texts(of(width)?.map(one).collect()))
+        }
+        _ => Err(format!("its type is {kind}; known are <f8, <f4 and <U")),
+    }
+}
+
+/// The check sum of ZIP, bit by bit: archives of grasps are small.
+fn crc32(bytes: &[u8]) -> u32 {
+    let mut sum = u32::MAX;
+    for &byte in bytes {
+        sum ^= u32::from(byte);
+        for _ in 0..8 {
+            sum = if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 };
+        }
+    }
+    !sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_check_sum_is_that_of_zip() {
+        assert_eq!(crc32(b"123456789"), 0xcbf4_3926);
+    }
+
+    #[test]
+    fn archives_come_back_whole_and_damaged_ones_are_refused() {
+        let arrays = [
+            ("numbers", Array::Numbers { shape: vec![2, 3], values: vec![0.1, -2.0, 3.5, 1e-300, 0.0, 7.0] }),
+            ("texts", Array::Texts(vec!["a".into(), "größer".into(), String::new()])),
+            ("none", Array::Numbers { shape: vec![0, 4, 4], values: vec![] }),
+        ];
+        let bytes = write(&arrays);
+        let back = read(&bytes).unwrap();
+        assert!(
+            back.iter().map(|(name, array)| (name.as_str(), array)).eq(arrays.iter().map(|(n, a)| (*n, a)))
+        );
+        for length in 0..bytes.len() {
+            assert!(read(&bytes[..length]).is_err());
+        }
+        for at in 0..bytes.len() {
+            let mut bad = bytes.clone();
+            bad[at] ^= 0x40;
+            // Any answer will do, but there is one.
+            let _ = read(&bad);
+        }
+    }
+}
