@@ -1,4 +1,5 @@
-"""Compares convex parts with those of CoACD: `python compare.py PARTS.json`, as the example `convex_parts` of robotc-core writes it.
+"""Compares convex parts with those of CoACD: `python compare.py PARTS.json [SECONDS]`, as the example `convex_parts` of robotc-core
+writes it. CoACD is given up on after so many seconds a mesh; 0 leaves it out.
 
 Both have at most 32 corners a part and the same mesh. Uncovered: vertices of the mesh more than a millionth of its diagonal outside of
 all parts. Distance: mean, of points spread over the outer surface of the parts from the mesh, in thousandths of the diagonal; it
@@ -6,7 +7,9 @@ needs no closed mesh. Times: ours by the clock, CoACD's too, in the order given,
 """
 
 import json
+import multiprocessing
 import pathlib
+import queue
 import sys
 import time
 
@@ -47,8 +50,28 @@ def score(parts, vertices, tree, size, rng):
     return uncovered, 1e3 * tree.query(outer)[0].mean() / size
 
 
-def main(path):
+def coacd_parts(vertices, faces, results):
     coacd.set_log_level("error")
+    results.put([p for p, _ in coacd.run_coacd(coacd.Mesh(vertices, faces), decimate=True, max_ch_vertex=CORNERS)])
+
+
+def parts_of_coacd(vertices, faces, limit):
+    """The parts, or None when that takes longer than the limit; and the seconds."""
+    start = time.perf_counter()
+    context = multiprocessing.get_context("spawn")
+    results = context.Queue()
+    worker = context.Process(target=coacd_parts, args=(vertices, faces, results))
+    worker.start()
+    try:
+        parts = results.get(timeout=limit)
+    except queue.Empty:
+        parts = None
+    worker.kill()
+    worker.join()
+    return parts, time.perf_counter() - start
+
+
+def main(path, limit):
     print("| mesh | triangles | parts | CoACD | uncovered | CoACD | distance | CoACD | ratio | seconds | CoACD |")
     print("|---|---|---|---|---|---|---|---|---|---|---|")
     ratios = []
@@ -60,19 +83,21 @@ def main(path):
         faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])]
         size = np.linalg.norm(vertices.max(0) - vertices.min(0))
         tree = cKDTree(on_triangles(vertices[faces], DENSE, rng))
-        start = time.perf_counter()
-        theirs = [p for p, _ in coacd.run_coacd(coacd.Mesh(vertices, faces), decimate=True, max_ch_vertex=CORNERS)]
-        seconds = time.perf_counter() - start
+        theirs, seconds = parts_of_coacd(vertices, faces, limit) if limit > 0 else (None, 0.0)
         missed, distance = score(entry["parts"], vertices, tree, size, rng)
-        missed_theirs, distance_theirs = score(theirs, vertices, tree, size, rng)
-        ratios.append(distance / distance_theirs)
+        cells = ["-", "-", "-", "-", f"> {limit:.0f}" if limit > 0 else "-"]
+        if theirs is not None:
+            missed_theirs, distance_theirs = score(theirs, vertices, tree, size, rng)
+            ratios.append(distance / distance_theirs)
+            cells = [len(theirs), missed_theirs, f"{distance_theirs:.2f}", f"{ratios[-1]:.2f}", f"{seconds:.1f}"]
         print(
-            f"| {pathlib.Path(entry['mesh']).stem} | {len(faces)} | {len(entry['parts'])} | {len(theirs)} | {missed} | {missed_theirs} | "
-            f"{distance:.2f} | {distance_theirs:.2f} | {ratios[-1]:.2f} | {entry['seconds']:.1f} | {seconds:.1f} |",
+            f"| {pathlib.Path(entry['mesh']).stem} | {len(faces)} | {len(entry['parts'])} | {cells[0]} | {missed} | {cells[1]} | "
+            f"{distance:.2f} | {cells[2]} | {cells[3]} | {entry['seconds']:.1f} | {cells[4]} |",
             flush=True,
         )
-    print(f"\nmedian ratio {np.median(ratios):.2f}, largest {max(ratios):.2f}")
+    if ratios:
+        print(f"\nmedian ratio {np.median(ratios):.2f}, largest {max(ratios):.2f}")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(sys.argv[1], float(sys.argv[2]) if len(sys.argv) > 2 else 600.0)

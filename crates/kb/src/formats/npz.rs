@@ -58,7 +58,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<GraspFile, FormatError> {
 pub(super) fn write(file: &GraspFile) -> Vec<u8> {
     let (count, joints) = (file.grasps.len(), file.joints.len());
     let numbers = |shape: &[usize], values: Vec<f64>| Array::Numbers { shape: shape.to_vec(), values };
-    let transforms = file.grasps.iter().flat_map(|g| rows_of_pose(&g.object_from_gripper).into_flattened());
+    let transforms =
+        file.grasps.iter().flat_map(|g| rows_of_pose(&g.object_from_gripper).into_iter().flatten());
     let confidence = file.grasps.iter().map(|g| g.confidence).collect();
     let mut arrays = vec![
         ("transforms", numbers(&[count, 4, 4], transforms.collect())),

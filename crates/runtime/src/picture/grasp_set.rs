@@ -2,17 +2,15 @@
 //! stay where a hand has been.
 
 use nalgebra::Point3;
-use robotc_core::ids::{Idx, LinkIdx};
-use robotc_core::model::LinkPoses;
-use robotc_core::robot::Gripper;
-use robotc_core::{Configuration, Kinematics, Pose};
-use robotc_kb::kinds::GraspSet;
-use robotc_kb::project::{OfGripperAndObject, Project};
+use robotc_core::Pose;
+use robotc_kb::kinds::ranked_grasps;
+use robotc_kb::project::OfGripperAndObject;
 use robotc_kb::{Knowledge, LoadError};
 use robotc_planning::grasp::Grasp;
 
 use super::Wanted;
-use crate::record::{Group, LineSet, Material, Node, NodeIdx, Recording};
+use super::hand::Hand;
+use crate::record::{Group, LineSet, Node, NodeIdx, Recording};
 
 /// Grasps that the hand shows.
 const SHOWN: usize = 30;
@@ -37,16 +35,16 @@ pub(super) fn draw(
     let sizes: Vec<f64> = subjects.iter().map(|s| size(&task.objects[s.object])).collect();
     let widest = sizes.iter().copied().fold(0.0, f64::max);
     for (i, (subject, &size)) in subjects.iter().zip(&sizes).enumerate() {
-        let grasps = knowledge.load::<GraspSet>(subject)?;
+        let grasps = ranked_grasps(knowledge, subject)?;
         let world_from_object = Pose::translation(0.0, ROOM * widest * i as f64, 0.0);
         let object = &task.objects[subject.object];
         let node = recording.add_body(&object.name, Group::Object, &object.geometry, world_from_object);
         let forks = grasps.iter().map(|g| &g.object_from_tool);
         recording.add_grasps(format!("grasps of {}", object.name), node, forks, 0.3 * size, 0.25 * size);
-        let hand = Hand::add(recording, project, subject, node);
+        let hand = Hand::add(recording, project.robot(), subject.gripper, Some(node));
         for (rank, grasp) in grasps.iter().take(SHOWN).enumerate() {
             let start = rank as f64 * SECONDS;
-            hand.take(recording, grasp, start, APPROACH * size);
+            take(&hand, recording, grasp, start, APPROACH * size);
             mark_contacts(recording, node, grasp, rank, start, MARK * size);
             if subjects.len() == 1 {
                 let name = format!("{}: epsilon {:.3}", rank + 1, grasp.epsilon);
@@ -71,6 +69,17 @@ fn size(object: &robotc_core::task::Object) -> f64 {
     robotc_core::geom::Aabb::of_points(&surface.vertices).map_or(0.1, |bounds| bounds.size().norm())
 }
 
+/// Comes near from `approach` metres away, closes, and holds.
+fn take(hand: &Hand<'_>, recording: &mut Recording, grasp: &Grasp, start: f64, approach: f64) {
+    let open = &hand.gripper.preshapes[grasp.preshape].values;
+    let (there, away) = (grasp.object_from_tool, grasp.object_from_backed_off(approach));
+    let poses =
+        [(0.0, away, open), (0.4, there, open), (0.7, there, &grasp.closed), (0.98, there, &grasp.closed)];
+    for (share, object_from_tool, fingers) in poses {
+        hand.stand(recording, start + share * SECONDS, &object_from_tool, fingers);
+    }
+}
+
 /// Lines along which the fingers press, drawn from the moment they do.
 fn mark_contacts(
     recording: &mut Recording,
@@ -88,65 +97,4 @@ fn mark_contacts(
     lines.times = vec![(start + SECONDS * 0.7) as f32; lines.points.len()];
     let name = format!("contacts of grasp {}", rank + 1);
     recording.add_node(Node::new(name, Group::Contact, Pose::identity()).child_of(object).with_lines(lines));
-}
-
-/// The links of a gripper beside an object.
-struct Hand<'a> {
-    kinematics: Kinematics,
-    gripper: &'a Gripper,
-    rest: Configuration,
-    links: Vec<(LinkIdx, NodeIdx)>,
-}
-
-impl<'a> Hand<'a> {
-    fn add(
-        recording: &mut Recording,
-        project: &'a Project,
-        subject: &OfGripperAndObject,
-        object: NodeIdx,
-    ) -> Self {
-        let robot = project.robot();
-        let gripper = &robot.grippers[subject.gripper];
-        let model = &robot.model;
-        let rest = Configuration::neutral(model);
-        let links = model.subtree(gripper.palm).into_iter().map(|index| {
-            let link = &model.links()[index];
-            let shown = if link.visuals.is_empty() { &link.collisions } else { &link.visuals };
-            let grey = 0.55 + 0.2 * (index.index() % 2) as f32;
-            let mut node = Node::new(&link.name, Group::Robot, Pose::identity()).child_of(object);
-            for geometry in shown {
-                let colour = geometry.colour.unwrap_or([grey, grey, grey + 0.03, 1.0]);
-                node.parts.push(recording.part(geometry, Material::painted(colour)));
-            }
-            (index, recording.add_node(node))
-        });
-        let links = links.collect();
-        Self { kinematics: Kinematics::new(model.clone()), gripper, rest, links }
-    }
-
-    /// Comes near from `approach` metres away, closes, and holds.
-    fn take(&self, recording: &mut Recording, grasp: &Grasp, start: f64, approach: f64) {
-        let open = &self.gripper.preshapes[grasp.preshape].values;
-        let there = grasp.object_from_tool;
-        let away = grasp.object_from_backed_off(approach);
-        let poses = [
-            (0.0, away, open),
-            (0.4, there, open),
-            (0.7, there, &grasp.closed),
-            (0.98, there, &grasp.closed),
-        ];
-        for (share, object_from_tool, fingers) in poses {
-            let mut q = self.rest.clone();
-            q.set(&self.gripper.dofs, fingers);
-            let mut root_from_links = LinkPoses::default();
-            self.kinematics.link_poses(&q, &mut root_from_links);
-            let object_from_palm = object_from_tool * self.gripper.palm_from_tool.inverse();
-            let object_from_root = object_from_palm * root_from_links.root_from(self.gripper.palm).inverse();
-            let frame = self
-                .links
-                .iter()
-                .map(|&(link, node)| (node, object_from_root * root_from_links.root_from(link)));
-            recording.push_frame(start + share * SECONDS, frame.collect::<Vec<_>>());
-        }
-    }
 }

@@ -4,8 +4,10 @@
 //! along the timeline: a grasp set shows one grasp after the other. What lies in a plane also has a [`plot()`].
 
 mod base_placement;
+mod caging_set;
 mod convex_parts;
 mod grasp_set;
+mod hand;
 mod ik_solutions;
 mod link_statistics;
 mod palette;
@@ -29,6 +31,7 @@ type Draw = fn(&Knowledge, &Wanted<'_>, &mut Recording) -> Result<usize, LoadErr
 /// What can be drawn, by name: kinds of artefacts, and what follows from several of them.
 pub const KINDS: &[(&str, Draw)] = &[
     ("base_placement", base_placement::draw),
+    ("caging_set", caging_set::draw),
     ("convex_parts", convex_parts::draw),
     ("grasp_set", grasp_set::draw),
     ("link_statistics", link_statistics::draw),

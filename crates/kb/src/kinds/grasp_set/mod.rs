@@ -9,7 +9,7 @@ mod generate;
 mod steadiness;
 mod stored;
 
-#[cfg(feature = "build")]
+#[cfg(feature = "shake")]
 pub(crate) use build::centre_of_volume;
 use robotc_planning::grasp::Grasp;
 

@@ -1,6 +1,6 @@
 //! How well grasps stand being shaken, by simulation.
 
-#[cfg(feature = "build")]
+#[cfg(feature = "shake")]
 mod rig;
 
 use robotc_planning::grasp::Grasp;
@@ -25,7 +25,7 @@ use crate::resolve::{Knowledge, LoadError};
 pub struct GraspShake;
 
 /// What shaking is computed from.
-#[cfg_attr(not(feature = "build"), expect(dead_code, reason = "artefacts that only generators load"))]
+#[cfg_attr(not(feature = "shake"), expect(dead_code, reason = "artefacts that only generators load"))]
 pub struct Inputs {
     gripper: GripperInputs,
     object_parts: Dep<ConvexParts>,
@@ -169,7 +169,26 @@ impl Kind for GraspShake {
     }
 }
 
-#[cfg(feature = "build")]
+/// A build without the simulation says so; what others computed is loaded all the same.
+#[cfg(all(feature = "build", not(feature = "shake")))]
+mod without {
+    use super::*;
+    use crate::kind::{Build, BuildError, Context};
+
+    const HOW: &str = "this robotc has no simulation: build it with --features shake";
+
+    impl Build for GraspShake {
+        fn build(_: &Inputs, _: &ShakeParameters, _: &Context<'_>) -> Result<Shaken, BuildError> {
+            Err(BuildError::Impossible(HOW.into()))
+        }
+
+        fn check(_: &Shaken, _: &Inputs, _: &ShakeParameters, _: &Context<'_>) -> Result<(), BuildError> {
+            Err(BuildError::Impossible(HOW.into()))
+        }
+    }
+}
+
+#[cfg(feature = "shake")]
 mod build {
     use nalgebra::{Translation3, UnitQuaternion, Vector3};
     use robotc_core::Pose;
