@@ -14,7 +14,7 @@ use crate::settings::Settings;
 /// Width and height of a still picture, pixels.
 const STILL: [u32; 2] = [1200, 800];
 
-/// Draw artefacts of a specification: a 3-D page, a still picture, or a plot of what lies in a plane
+/// Draw artefacts: a 3-D page, a still picture, or a plot of what lies in a plane
 #[derive(Args)]
 #[command(after_help = "Examples:\n  robotc view mug.task.toml grasp_set -o grasps.html\n  \
     robotc view arm.robot.toml convex_parts forearm -o forearm.html\n  \
