@@ -14,7 +14,11 @@ pub const LIMITS: [[f64; 2]; VARIABLES] =
 
 /// The joint vector within limits that brings the tool to a pose and is nearest to `now`, if there is one; its largest step counts.
 /// `room` is where the solver puts its answers.
-pub fn nearest(base_from_tip: &Frame, now: &[f64; VARIABLES], room: &mut Solutions) -> Option<[f64; VARIABLES]> {
+pub fn nearest(
+    base_from_tip: &Frame,
+    now: &[f64; VARIABLES],
+    room: &mut Solutions,
+) -> Option<[f64; VARIABLES]> {
     kr6::solve(base_from_tip, &[], room);
     let mut best = None;
     let mut least = f64::INFINITY;

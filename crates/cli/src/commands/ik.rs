@@ -174,7 +174,10 @@ pub(crate) fn run(args: &Ik) -> Outcome {
 fn compile_within(chain: &SerialChain, options: &Options, seconds: f64) -> Result<Compiled, Refusal> {
     let (send, receive) = std::sync::mpsc::channel();
     let work = (chain.clone(), options.clone());
-    std::thread::spawn(move || send.send(compile(&work.0, &work.1)));
+    std::thread::spawn(move || {
+        // Whoever asked may not wait any more.
+        drop(send.send(compile(&work.0, &work.1)));
+    });
     let budget = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
     receive.recv_timeout(budget).unwrap_or_else(|_| {
         let reason = format!(
