@@ -78,6 +78,7 @@ impl Bucket {
                 ("AWS_ENDPOINT", endpoint.as_str()),
                 ("AWS_ALLOW_HTTP", "true"),
                 ("AWS_REGION", "us-east-1"),
+                ("AWS_DEFAULT_REGION", "us-east-1"),
                 ("AWS_ACCESS_KEY_ID", "campaign"),
                 ("AWS_SECRET_ACCESS_KEY", "campaign"),
             ]

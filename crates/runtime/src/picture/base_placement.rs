@@ -76,7 +76,7 @@ pub(super) fn plot(knowledge: &Knowledge, wanted: &Wanted<'_>) -> Result<Vec<Pan
             step: floor.step,
             columns: SQUARES,
             values: placements.distribution(floor.corner, floor.step, SQUARES, SQUARES),
-            scale: "share of the weight",
+            scale: "share of the weight, for each square",
             marks: vec![(centre, object), ([0.0, 0.0], "robot".into())],
         })
     };

@@ -83,7 +83,8 @@ impl Panel {
         let most = self.values.iter().copied().fold(0.0, f64::max);
         for (shade, path) in self.shades(most).iter().enumerate().filter(|(_, path)| !path.is_empty()) {
             let colour = colour((shade as f32 + 0.5) / SHADES as f32);
-            writeln!(text, "<path fill=\"{colour}\" d=\"{path}\"/>").expect(WRITES);
+            writeln!(text, "<path fill=\"{colour}\" shape-rendering=\"crispEdges\" d=\"{path}\"/>")
+                .expect(WRITES);
         }
         let frame = "fill=\"none\" stroke=\"#999\"";
         writeln!(text, "<rect width=\"{w:.1}\" height=\"{h:.1}\" {frame}/>").expect(WRITES);
