@@ -15,6 +15,7 @@ mod padding;
 mod part;
 mod parts;
 mod penetration;
+mod polygon;
 mod primitive;
 mod query;
 mod quick_hull;
@@ -30,6 +31,7 @@ pub use mesh_index::{MeshIndex, NearestPoint, RayHit};
 pub use padding::{PaddedPart, PaddedParts, outside_of_bodies};
 pub use part::{ConvexPart, PartError, Plane};
 pub use parts::ConvexParts;
+pub use polygon::{ConvexPolygon, HalfPlane};
 pub use primitive::{box_part, capsule_part, cylinder_part, sphere_part};
 pub use query::{
     Contact, Distance, Separation, any_within, contact, distance, intersects, separation, within,
