@@ -15,6 +15,7 @@ pub struct Project {
     name: String,
     robot: Arc<Robot>,
     tools: Vec<Origin>,
+    camera_poses: Vec<Origin>,
     task: Option<Arc<Task>>,
     given: Given,
 }
@@ -26,6 +27,7 @@ impl Project {
             name: spec.name.clone(),
             robot: spec.robot.clone(),
             tools: spec.tools.clone(),
+            camera_poses: spec.camera_poses.clone(),
             task: None,
             given: spec.parameters.clone(),
         }
@@ -45,6 +47,11 @@ impl Project {
     /// `palm_from_tool` of a gripper as written.
     pub fn tool(&self, gripper: usize) -> &Origin {
         &self.tools[gripper]
+    }
+
+    /// `link_from_camera` of a camera as written.
+    pub fn camera_pose(&self, camera: usize) -> &Origin {
+        &self.camera_poses[camera]
     }
 
     /// The robot.
@@ -83,6 +90,10 @@ pub struct OfArm(pub usize);
 /// A gripper: its position in [`Robot::grippers`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OfGripper(pub usize);
+
+/// A camera on the robot: its position in [`Robot::cameras`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OfCamera(pub usize);
 
 /// An object of the task that can be grasped: its position in [`Task::objects`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -144,6 +155,16 @@ impl Subject for OfGripper {
 
     fn label(&self, project: &Project) -> String {
         format!("{}/{}", robot_label(project), word(&project.robot.grippers[self.0].name))
+    }
+}
+
+impl Subject for OfCamera {
+    fn all(project: &Project) -> Vec<Self> {
+        (0..project.robot.cameras.len()).map(Self).collect()
+    }
+
+    fn label(&self, project: &Project) -> String {
+        format!("{}/{}", robot_label(project), word(&project.robot.cameras[self.0].name))
     }
 }
 

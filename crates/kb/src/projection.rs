@@ -127,6 +127,12 @@ impl Mechanism {
         Ok((hand, gripper, links))
     }
 
+    /// The links that are rigid with a link, in the order in which they are in `model`.
+    pub fn rigid(model: &RobotModel, link: LinkIdx) -> Result<(Self, Vec<LinkIdx>), ChainError> {
+        let links = model.rigid_group(link);
+        Ok((Self::of(model, &links, Limits::Dropped)?, links))
+    }
+
     /// The given links with the joints between them.
     fn of(model: &RobotModel, links: &[LinkIdx], limits: Limits) -> Result<Self, ChainError> {
         let mut builder = RobotBuilder::new("mechanism");

@@ -71,6 +71,7 @@ const EDITS: &[Edit] = &[
         apply: |s| joint(s, 7).origin.xyz[2] = 0.115,
         rebuilt: &[
             "arm_pairs arm/main",
+            "camera_view arm/eye",
             "grasp_set arm/jaws+tidy/mug",
             "link_statistics arm",
             "self_collision_pairs arm",
@@ -82,6 +83,7 @@ const EDITS: &[Edit] = &[
         apply: |s| s.links[7].collision = support::cuboid([0.02, 0.012, 0.05], [0.0, 0.006, 0.025]),
         rebuilt: &[
             "arm_pairs arm/main",
+            "camera_view arm/eye",
             "convex_parts arm/left",
             "grasp_set arm/jaws+tidy/mug",
             "link_statistics arm",
@@ -138,6 +140,12 @@ const EDITS: &[Edit] = &[
         apply: |s| s.given.set("grasp_shake", "grasps", ParameterValue::Integer(1)),
         rebuilt: &["grasp_shake arm/jaws+tidy/mug"],
         because: "never computed for this subject",
+    },
+    Edit {
+        name: "place of the camera",
+        apply: |s| s.eye.xyz[0] = 0.06,
+        rebuilt: &["camera_view arm/eye"],
+        because: "changed: camera",
     },
     Edit { name: "mass of the object", apply: |s| s.object.mass = 1.0, rebuilt: &[], because: "" },
     Edit {

@@ -45,6 +45,16 @@ impl ConvexPolygon {
         Self { corners }
     }
 
+    /// These corners, if they go counter-clockwise round a convex polygon, or are none.
+    pub fn from_corners(corners: Vec<Point2<f64>>) -> Option<Self> {
+        let polygon = Self { corners };
+        let size = polygon.corners.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
+        let rounding = 1e-9 * size * size;
+        let left = |(a, b): (Point2<f64>, Point2<f64>)| polygon.corners.iter().all(|p| turn(&a, &b, p) >= -rounding);
+        let is_convex = size.is_finite() && polygon.edges().all(left);
+        (polygon.corners.is_empty() || is_convex && polygon.area() > 0.0).then_some(polygon)
+    }
+
     /// A rectangle along the axes.
     pub fn rectangle(low: Point2<f64>, high: Point2<f64>) -> Self {
         Self::hull_of([low, Point2::new(high.x, low.y), high, Point2::new(low.x, high.y)])

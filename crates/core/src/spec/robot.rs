@@ -24,6 +24,8 @@ pub struct RobotSpec {
     pub robot: Arc<Robot>,
     /// `palm_from_tool` of each gripper as written: what an artefact key hashes.
     pub tools: Vec<Origin>,
+    /// `link_from_camera` of each camera as written.
+    pub camera_poses: Vec<Origin>,
     /// Parameters of artefact kinds set for this robot.
     pub parameters: Parameters,
     /// The specification.
@@ -97,6 +99,7 @@ fn read(
         name: table.text("name")?.0.to_owned(),
         robot: Arc::new(robot),
         tools: table.tables("gripper").map(|(gripper, _)| lookup::origin(gripper, "tool")).collect(),
+        camera_poses: table.tables("camera").map(|(camera, _)| lookup::origin(camera, "pose")).collect(),
         parameters: file::read_parameters(table, parameters),
         path: path.to_owned(),
         description,

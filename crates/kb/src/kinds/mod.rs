@@ -1,6 +1,7 @@
 //! The artefact kinds: one file each, one line each in [`ALL`].
 
 mod arm_pairs;
+mod camera_view;
 mod caging_set;
 mod chain_reach;
 mod convex_parts;
@@ -14,6 +15,7 @@ mod self_collision_pairs;
 mod sphere_cover;
 
 pub use arm_pairs::{ArmPairs, LinkPairs};
+pub use camera_view::{CameraView, CameraViewParameters, CameraViews, Mask};
 pub use caging_set::{Cage, CageHold, CagingParameters, CagingSet};
 pub use chain_reach::{ChainReach, ReachSphere};
 pub use convex_parts::{ConvexParts, ConvexPartsParameters};
@@ -42,6 +44,7 @@ pub const ALL: &[&dyn AnyKind] = &[
     &Entry::<GraspSet>::new(),
     &Entry::<GraspShake>::new(),
     &Entry::<CagingSet>::new(),
+    &Entry::<CameraView>::new(),
 ];
 
 /// The kind of this name.

@@ -7,7 +7,7 @@ use robotc_core::ids::{Idx, LinkIdx};
 use robotc_core::model::{
     Configuration, DynamicLimits, Geometry, Inertial, JointMotion, Origin, RobotBuilder, Shape,
 };
-use robotc_core::robot::{Base, Preshape};
+use robotc_core::robot::{Base, Camera, Preshape};
 use robotc_core::spec::{ParameterValue, RobotSpec, TaskSpec};
 use robotc_core::task::{Article, Destination, Goal, Object, Obstacle};
 use robotc_core::{Arm, Gripper, Pose, Robot, Task};
@@ -19,6 +19,8 @@ pub(crate) struct Spec {
     pub(crate) robot_name: String,
     pub(crate) links: Vec<LinkSpec>,
     pub(crate) tool: Origin,
+    /// Of the camera on the hand.
+    pub(crate) eye: Origin,
     pub(crate) object: Object,
     pub(crate) obstacle: Obstacle,
     pub(crate) articles: Vec<Article>,
@@ -115,6 +117,7 @@ pub(crate) fn spec() -> Spec {
         robot_name: "arm".into(),
         links: specs,
         tool: Origin { xyz: [0.0, 0.0, 0.14], rpy: [0.0; 3] },
+        eye: Origin { xyz: [0.05, 0.0, 0.08], rpy: [0.0; 3] },
         object: Object {
             name: "mug".into(),
             geometry: Arc::new(vec![cuboid([0.06, 0.06, 0.09], [0.0; 3])]),
@@ -232,7 +235,13 @@ impl Spec {
                 fingers: vec![LinkIdx::new(7), LinkIdx::new(8)],
                 preshapes: vec![Preshape { name: "open".into(), values: vec![0.05] }],
             }],
-            cameras: Vec::new(),
+            cameras: vec![Camera {
+                name: "eye".into(),
+                link: LinkIdx::new(6),
+                link_from_camera: self.eye.pose(),
+                size: [640, 480],
+                intrinsics: [600.0, 600.0, 320.0, 240.0],
+            }],
             base: Base::Fixed,
             ignored_pairs: Vec::new(),
             weights: Vec::new(),
@@ -261,6 +270,7 @@ impl Spec {
             name: self.robot_name.clone(),
             robot,
             tools: vec![self.tool],
+            camera_poses: vec![self.eye],
             parameters: Given::default(),
             path: "arm.robot.toml".into(),
             description: "arm.urdf".into(),

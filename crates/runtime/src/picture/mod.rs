@@ -5,6 +5,7 @@
 
 mod base_placement;
 mod caging_set;
+mod camera_view;
 mod convex_parts;
 mod grasp_set;
 mod hand;
@@ -32,6 +33,7 @@ type Draw = fn(&Knowledge, &Wanted<'_>, &mut Recording) -> Result<usize, LoadErr
 pub const KINDS: &[(&str, Draw)] = &[
     ("base_placement", base_placement::draw),
     ("caging_set", caging_set::draw),
+    ("camera_view", camera_view::draw),
     ("convex_parts", convex_parts::draw),
     ("grasp_set", grasp_set::draw),
     ("link_statistics", link_statistics::draw),
