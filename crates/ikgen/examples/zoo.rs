@@ -1,19 +1,26 @@
 //! Compiles every arm of a folder with an `INDEX.tsv`, proves it, and prints a table in Markdown: what was solved of each set,
 //! then class and time of each arm, or the reason why it is refused. `cargo xtask ik-zoo` stores it.
 //!
-//! `cargo run --release -p robotc-ikgen --example zoo -- FOLDER [POSES] [FILTER] [--detail] [--no-snap]`: only arms whose name contains
-//! FILTER; details are all sets, the search and the program; without snapping arms are solved as they are described.
+//! `cargo run --release -p robotc-ikgen --example zoo -- FOLDER [POSES] [FILTER] [--detail] [--no-snap] [--singular=N]`: only arms whose
+//! name contains FILTER; details are all sets, the search and the program; without snapping arms are solved as they are described; the
+//! random set has POSES, the singular ones N, or as many. Robots of the thesis that have no URDF are those of the tests.
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 use std::path::Path;
 use std::time::Instant;
 
+use robotc_core::Seed;
 use robotc_core::system::{ReadError, System};
 use robotc_core::urdf::{LoadOptions, MeshPolicy, load};
 use robotc_core::{Kinematics, SerialChain, Sources};
-use robotc_ikgen::report::{ProofOptions, Report, SetReport, prove};
+use robotc_ikgen::report::poses::{PoseSet, random};
+use robotc_ikgen::report::{ProofOptions, Report, SetReport, prove, prove_set};
 use robotc_ikgen::{GoalType, Options, compile};
+
+#[allow(dead_code)]
+#[path = "../tests/ikgen/arms.rs"]
+mod arms;
 
 struct Files;
 
@@ -46,6 +53,10 @@ fn main() {
             arms.push((name.into(), arm(&chain, poses, &options)));
         }
     }
+    for chain in arms::of_the_thesis().into_iter().filter(|chain| chain.name.contains(filter)) {
+        eprintln!("{}", chain.name);
+        arms.push((chain.name.clone(), arm(&chain, poses, &options)));
+    }
     summary(&arms, poses);
     table(&arms);
 }
@@ -71,7 +82,15 @@ fn arm(chain: &SerialChain, poses: usize, options: &[String]) -> Report {
             (Report::refused(refusal, GoalType::default(), seconds), &refusal.trace, String::new())
         }
         Ok(compiled) => {
-            let report = prove(compiled, seconds, &ProofOptions { poses, seed: 1 }, &now);
+            let singular = options.iter().find_map(|o| o.strip_prefix("--singular=")?.parse().ok());
+            let singular = singular.unwrap_or(poses);
+            let mut report = prove(compiled, seconds, &ProofOptions { poses: singular, seed: 1 }, &now);
+            if singular != poses {
+                let mut rng = Seed::new(2).split("ikgen zoo").rng();
+                let vectors = (0..poses).map(|_| random(chain, &mut rng)).collect();
+                let set = PoseSet { name: "random", regular: true, vectors };
+                report.sets[0] = prove_set(chain, &compiled.solver(), &set, &now);
+            }
             (report, &compiled.trace, compiled.text())
         }
     };

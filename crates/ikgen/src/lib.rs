@@ -62,7 +62,7 @@
 //!
 //! **Solutions.** A candidate is *accepted* if it reaches the pose on the *true chain* to 1e-9 (metres, and Frobenius norm of the
 //! rotation difference). The true chain is not part of the program but given at load: the described arm, or a calibrated one. A
-//! candidate that misses by more than 1e-10 is polished by Newton steps on the true chain first. Equal solutions are kept once. So
+//! candidate that misses by more than 1e-13 is polished by Newton steps on the true chain first. Equal solutions are kept once. So
 //! a program can only fail to find something; it cannot give a wrong answer.
 
 #[cfg(feature = "generate")]

@@ -497,23 +497,42 @@ static void ik_reach(const ik_chain *chain, const double *values, ik_frame *tip,
     ik_times(&at, &chain->last_from_tip, tip);
 }
 
-/* Solves a positive definite system in place (Cholesky). */
-static void ik_solve_symmetric(double m[IK_VARIABLES][IK_VARIABLES], double right[IK_VARIABLES])
+/* Mirrors rows from to end of a column; weight is 2 over the square of the mirror's normal. */
+static void ik_reflect(const double *mirror, double weight, int from, int end, double *column)
 {
-    int i, j, k;
-    for (j = 0; j < IK_VARIABLES; j++)
-        for (i = j; i < IK_VARIABLES; i++) {
-            double sum = m[i][j];
-            for (k = 0; k < j; k++) sum -= m[i][k] * m[j][k];
-            m[i][j] = i == j ? ik_sqrt(sum > 1e-18 ? sum : 1e-18) : sum / m[j][j];
-        }
+    double sum = 0.0;
+    int r;
+    for (r = from; r < end; r++) sum += mirror[r] * column[r];
+    for (r = from; r < end; r++) column[r] -= weight * sum * mirror[r];
+}
+
+/* The step x of the variables that makes |columns x - error|^2 + damping |x|^2 least; held ones stay. */
+static void ik_damped(double columns[IK_VARIABLES][6], const double error[6], double damping, double step[IK_VARIABLES])
+{
+    double m[IK_VARIABLES][6 + IK_VARIABLES] = { { 0.0 } }, right[6 + IK_VARIABLES] = { 0.0 }, diagonal[IK_VARIABLES];
+    double mirror[6 + IK_VARIABLES];
+    int i, k, r;
+    for (r = 0; r < 6; r++) right[r] = error[r];
     for (i = 0; i < IK_VARIABLES; i++) {
-        for (k = 0; k < i; k++) right[i] -= m[i][k] * right[k];
-        right[i] /= m[i][i];
+        for (r = 0; r < 6; r++) m[i][r] = ik_held[i] ? 0.0 : columns[i][r];
+        m[i][6 + i] = ik_held[i] ? 1.0 : ik_sqrt(damping);
+    }
+    for (k = 0; k < IK_VARIABLES; k++) {
+        int end = 7 + k;
+        double square = 0.0, length, weight;
+        for (r = 0; r < end; r++) mirror[r] = m[k][r];
+        for (r = k; r < end; r++) square += mirror[r] * mirror[r];
+        length = mirror[k] < 0.0 ? -ik_sqrt(square) : ik_sqrt(square);
+        diagonal[k] = -length;
+        weight = 1.0 / (square + ik_abs(mirror[k]) * ik_abs(length));
+        mirror[k] += length;
+        for (i = k + 1; i < IK_VARIABLES; i++) ik_reflect(mirror, weight, k, end, m[i]);
+        ik_reflect(mirror, weight, k, end, right);
     }
     for (i = IK_VARIABLES - 1; i >= 0; i--) {
-        for (k = i + 1; k < IK_VARIABLES; k++) right[i] -= m[k][i] * right[k];
-        right[i] /= m[i][i];
+        double sum = right[i];
+        for (k = i + 1; k < IK_VARIABLES; k++) sum -= m[k][i] * step[k];
+        step[i] = ik_held[i] ? 0.0 : sum / diagonal[i];
     }
 }
 
@@ -525,7 +544,7 @@ static double ik_polish(const ik_chain *chain, const ik_frame *pose, double valu
     for (i = 0; i < IK_VARIABLES; i++) at[i] = values[i];
     for (round = 0; round < 50; round++) {
         double axes[IK_LINKS][6], columns[IK_VARIABLES][6] = { { 0.0 } }, error[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
-        double normal[IK_VARIABLES][IK_VARIABLES] = { { 0.0 } }, right[IK_VARIABLES] = { 0.0 };
+        double step[IK_VARIABLES];
         double distance, longest = 0.0, scale;
         ik_frame tip;
         ik_reach(chain, at, &tip, axes);
@@ -550,11 +569,11 @@ static double ik_polish(const ik_chain *chain, const ik_frame *pose, double valu
         /* What starts near lacks digits alone. */
         if (round == 0 && distance < 1e-7) patience = 4;
         if (distance < best) {
-            int converged = distance < 1e-10 && distance > 0.1 * best;
+            int converged = distance < 1e-13 && distance > 0.1 * best;
             best = distance;
             for (i = 0; i < IK_VARIABLES; i++) values[i] = at[i];
-            if (best < 1e-12 || converged) break;
-        } else if (best < 1e-10 || !ik_finite(distance)) {
+            if (best < 1e-14 || converged) break;
+        } else if (best < 1e-13 || !ik_finite(distance)) {
             break;
         }
         since++;
@@ -564,21 +583,10 @@ static double ik_polish(const ik_chain *chain, const ik_frame *pose, double valu
         } else if (since >= patience) {
             break;
         }
-        for (i = 0; i < IK_VARIABLES; i++) {
-            if (ik_held[i]) {
-                normal[i][i] = 1.0;
-                continue;
-            }
-            for (j = 0; j <= i; j++)
-                if (!ik_held[j])
-                    for (k = 0; k < 6; k++) normal[i][j] += columns[i][k] * columns[j][k];
-            normal[i][i] += 1e-15 + 0.25 * distance * distance;
-            for (k = 0; k < 6; k++) right[i] += columns[i][k] * error[k];
-        }
-        ik_solve_symmetric(normal, right);
-        for (i = 0; i < IK_VARIABLES; i++) if (ik_abs(right[i]) > longest) longest = ik_abs(right[i]);
+        ik_damped(columns, error, 1e-22 + 0.25 * distance * distance, step);
+        for (i = 0; i < IK_VARIABLES; i++) if (ik_abs(step[i]) > longest) longest = ik_abs(step[i]);
         scale = longest > 0.3 ? 0.3 / longest : 1.0;
-        for (i = 0; i < IK_VARIABLES; i++) at[i] += scale * right[i];
+        for (i = 0; i < IK_VARIABLES; i++) at[i] += scale * step[i];
     }
     return best;
 }
@@ -607,7 +615,7 @@ static int ik_settle(const ik_sink *sink, double steps[IK_VARIABLES][2], double 
     ik_reach(sink->chain, values, &tip, axes);
     distance = ik_distance(&tip, sink->pose);
     if (!ik_finite(distance)) return 0;
-    if (distance <= 1e-10) return 1;
+    if (distance <= 1e-13) return 1;
     if (!(ik_polish(sink->chain, sink->pose, values) < 1e-9)) return 0;
     for (i = 0; i < IK_VARIABLES; i++) {
         if (ik_slides[i] || ik_held[i]) continue;
@@ -621,7 +629,7 @@ static int ik_settle(const ik_sink *sink, double steps[IK_VARIABLES][2], double 
    from the pose, rotation and position. */
 static void ik_offer(ik_sink *sink, double steps[IK_VARIABLES][2], double values[IK_VARIABLES], const double misses[2])
 {
-    int i, k, exact = sink->described && misses[0] <= 1e-10 * 1e-10 && misses[1] <= 1e-10 * 1e-10;
+    int i, k, exact = sink->described && misses[0] <= 1e-13 * 1e-13 && misses[1] <= 1e-13 * 1e-13;
     if (sink->misses >= 256) return;
     if (!exact && !ik_settle(sink, steps, values)) {
         sink->misses++;

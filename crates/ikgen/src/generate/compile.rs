@@ -16,9 +16,6 @@ use crate::passes;
 use crate::report::poses::{sets, slides};
 use crate::run::Solver;
 
-/// Snaps below this come from the digits of the description: they need a polish, but hide no roots.
-const ROUNDING: f64 = 1e-8;
-
 /// Tolerance within which a chain counts as solved just as it is described.
 const EXACT: f64 = 1e-9;
 
@@ -375,7 +372,7 @@ fn finished(
     let mut program = builder.finish();
     // Below this the difference is rounding of the description, which the check covers.
     program.snap = if snap < 1e-12 { 0.0 } else { snap };
-    program.slack = if snap < ROUNDING { 0.0 } else { 4.0 * snap };
+    program.slack = 4.0 * program.snap;
     program.class = class.clone();
     let program = passes::optimise(&program);
     // A difference that can hide roots hides them rarely.

@@ -278,6 +278,57 @@ pub(crate) fn palletiser() -> SerialChain {
     chain
 }
 
+/// Robots of Diankov's thesis that come without a URDF, at zero, from their original files: joint axes and points as OpenRAVE's COLLADA
+/// files and Klampt's `hrp2.rob` have them.
+pub(crate) fn of_the_thesis() -> Vec<SerialChain> {
+    let minus = |axis: [f64; 3]| axis.map(|x| 0.0 - x);
+    let kr5 = [
+        (minus(Z), [0.0, 0.0, 0.0]),
+        (Y, [0.075, 0.0, 0.335]),
+        (Y, [0.075, 0.0, 0.7]),
+        (minus(X), [0.293, 0.0, 0.79]),
+        (Y, [0.48, 0.0, 0.79]),
+        (minus(X), [0.56, 0.0, 0.79]),
+    ];
+    let pa10 = [
+        (Z, [0.0, 0.0, 0.315]),
+        (Y, [0.0, 0.0, 0.315]),
+        (Z, [0.0, 0.0, 0.315]),
+        (Y, [0.0, 0.0, 0.765]),
+        (Z, [0.0, 0.0, 0.765]),
+        (Y, [0.0, 0.0, 1.265]),
+        (Z, [0.0, 0.0, 1.265]),
+    ];
+    let manus = [
+        (minus(Y), [0.045416, -0.147592, 0.467052]),
+        (minus(X), [-0.084734, 0.302408, 0.467052]),
+        (minus(X), [-0.084734, 0.302408, 0.872052]),
+        (minus(Z), [-0.054734, 0.302408, 1.04805]),
+        (Y, [-0.054734, 0.302408, 1.20305]),
+        (minus(Z), [-0.054734, 0.302408, 1.20305]),
+    ];
+    let shoulder = [0.008, -0.25, 0.181];
+    let hrp2 = [
+        (Y, shoulder),
+        (X, shoulder),
+        (Z, shoulder),
+        (Y, [0.008, -0.25, -0.069]),
+        (Z, [0.008, -0.25, -0.319]),
+        (Y, [0.008, -0.25, -0.319]),
+    ];
+    // The other source of the PA-10 has its wrist 2.5 mm off.
+    let mut offset_pa10 = pa10;
+    offset_pa10[5].1[0] = -0.0025;
+    offset_pa10[6].1[0] = -0.0025;
+    vec![
+        chain("kuka_kr5_r850", &kr5, [0.56, 0.0, 0.79]),
+        chain("mitsubishi_pa10", &pa10, [0.0, 0.0, 1.345]),
+        chain("mitsubishi_pa10_openhrp", &offset_pa10, [-0.0025, 0.0, 1.345]),
+        chain("exactdynamics_manus", &manus, [-0.0833026, 0.302408, 1.26517]),
+        chain("aist_hrp2", &hrp2, [0.0299, -0.25, -0.40425]),
+    ]
+}
+
 /// All of them.
 pub(crate) fn all() -> Vec<SerialChain> {
     vec![
