@@ -498,7 +498,7 @@ static void ik_reach(const ik_chain *chain, const double *values, ik_frame *tip,
 }
 
 /* Mirrors rows from to end of a column; weight is 2 over the square of the mirror's normal. */
-static void ik_reflect(const double *mirror, double weight, int from, int end, double *column)
+static void ik_mirror_rows(const double *mirror, double weight, int from, int end, double *column)
 {
     double sum = 0.0;
     int r;
@@ -526,8 +526,8 @@ static void ik_damped(double columns[IK_VARIABLES][6], const double error[6], do
         diagonal[k] = -length;
         weight = 1.0 / (square + ik_abs(mirror[k]) * ik_abs(length));
         mirror[k] += length;
-        for (i = k + 1; i < IK_VARIABLES; i++) ik_reflect(mirror, weight, k, end, m[i]);
-        ik_reflect(mirror, weight, k, end, right);
+        for (i = k + 1; i < IK_VARIABLES; i++) ik_mirror_rows(mirror, weight, k, end, m[i]);
+        ik_mirror_rows(mirror, weight, k, end, right);
     }
     for (i = IK_VARIABLES - 1; i >= 0; i--) {
         double sum = right[i];

@@ -1178,7 +1178,8 @@ static int ik_solve_order(const ik_line lines[6], const ik_motion *goal, const d
     view.width = 1.0;
     for (round = 0; round < 4; round++) {
         all &= ik_look(&loop, &six, (int)order[1], order[2] > 0.0, &view, slack, found, &flat);
-        if (!flat) return all && found->count > before;
+        /* Real roots come in pairs: an odd number of them lacks one. */
+        if (!flat) return all && found->count > before && (found->count - before) % 2 == 0;
     }
     return 0;
 }

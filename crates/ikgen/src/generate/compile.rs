@@ -16,6 +16,9 @@ use crate::passes;
 use crate::report::poses::{sets, slides};
 use crate::run::Solver;
 
+/// Snaps below this come from the digits of the description: they need a polish, but hide no roots.
+const ROUNDING: f64 = 1e-8;
+
 /// Tolerance within which a chain counts as solved just as it is described.
 const EXACT: f64 = 1e-9;
 
@@ -165,18 +168,23 @@ fn search(
                 attempt(chain, options, free, tolerance, strategies::SPECIAL, rest, &letters, trace)
             };
             match special(false, trace) {
-                Ok(found) if found.lost == 0 => return Ok((found.program, found.class)),
                 Ok(found) => {
-                    // A simpler ideal chain might lose less, but not less than the general solver on the described one leaves.
+                    // Few poses show what a snap hides; a simpler ideal chain might lose less, but not less than the general solver on
+                    // the described one leaves.
+                    let hides = found.program.slack > 0.0;
                     if options.goal == GoalType::default()
+                        && (hides || found.lost > 0)
                         && best.as_ref().is_none_or(|b| found.lost < b.lost)
                         && let Ok(whole) = special(true, trace)
-                        && whole.lost < found.lost
+                        && (whole.lost < found.lost || hides && whole.lost == found.lost)
                     {
                         if whole.lost == 0 {
                             return Ok((whole.program, whole.class));
                         }
                         keep_better(&mut best, whole);
+                    }
+                    if found.lost == 0 {
+                        return Ok((found.program, found.class));
                     }
                     keep_better(&mut best, found);
                     // Other free joints would not be better, a simpler ideal chain might.
@@ -290,7 +298,7 @@ fn attempt(
                 Ok(how) => {
                     let how = if whole < 6 { format!("{how}, completed to 6R") } else { how };
                     let class = describe(letters, name, reversed, &how, free, chain);
-                    match finished(builder, class.clone(), problem.snap(), chain, options) {
+                    match finished(builder, class.clone(), problem.snap(), rest, chain, options) {
                         Ok(found) => {
                             line += &format!("{how}; solved, {} trial poses lost", found.lost);
                             trace.push(line);
@@ -353,7 +361,7 @@ fn one_by_one(
     };
     let class = describe(letters, "one by one", false, &how, free, chain);
     let snap = super::facts::snap_between(&facts.described, &facts.ideal);
-    let result = finished(builder, class.clone(), snap, chain, options);
+    let result = finished(builder, class.clone(), snap, false, chain, options);
     match &result {
         Ok(found) => trace.push(format!("{line}{how}; solved, {} trial poses lost", found.lost)),
         Err(reason) => trace.push(format!("{line}{how}; {reason}")),
@@ -361,18 +369,22 @@ fn one_by_one(
     result.map_err(|reason| Some(format!("{class}: {reason}")))
 }
 
-/// The optimised program of a builder, tried.
+/// The optimised program of a builder, tried. With `rest` it ends in the general solver, which is asked wherever the snap leaves a doubt.
 fn finished(
     builder: Builder,
     class: String,
     snap: f64,
+    rest: bool,
     chain: &SerialChain,
     options: &Options,
 ) -> Result<Found, String> {
     let mut program = builder.finish();
     // Below this the difference is rounding of the description, which the check covers.
     program.snap = if snap < 1e-12 { 0.0 } else { snap };
-    program.slack = 4.0 * program.snap;
+    program.slack = if snap < ROUNDING { 0.0 } else { 4.0 * snap };
+    if rest && program.slack > 0.0 {
+        super::doubt::ask_where_in_doubt(&mut program);
+    }
     program.class = class.clone();
     let program = passes::optimise(&program);
     // A difference that can hide roots hides them rarely.

@@ -3,6 +3,7 @@
 pub mod builder;
 pub mod compile;
 mod complete;
+mod doubt;
 pub mod equations;
 pub mod facts;
 pub(crate) mod lock;

@@ -211,7 +211,8 @@ fn solve(lines: &[Line; 6], goal: &Motion, order: Order, slack: f64, found: &mut
         all &= apart;
         match flat {
             Some((u, width)) => view = view.zoomed(u, width),
-            None => return all && found.len > before,
+            // Real roots come in pairs: an odd number of them lacks one.
+            None => return all && found.len > before && (found.len - before) % 2 == 0,
         }
     }
     false

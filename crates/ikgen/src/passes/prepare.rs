@@ -5,7 +5,7 @@
 
 use super::cost::cost;
 use super::{flip, optimise, with_body};
-use crate::ir::{Binary, Block, Expr, Exprs, Node, Program, Stmt, Unary, Value, Var};
+use crate::ir::{Binary, Block, Expr, Exprs, Node, Program, RootKind, Stmt, Unary, Value, Var};
 use crate::kernel::chain::{Frame, Link};
 use crate::run::TrueChain;
 
@@ -35,6 +35,7 @@ fn block(stmts: &mut Block, out: &mut Program, chain: &TrueChain, cut: usize, pa
     let mut i = 0;
     while i < stmts.len() {
         match &mut stmts[i] {
+            Stmt::ForEach { kind: RootKind::Six, body, .. } => unchecked(body, out),
             Stmt::ForEach { out: names, body, .. } => {
                 let outer = pairs.len();
                 pairs.extend(names.chunks_exact(2).map(|p| [p[0], p[1]]));
@@ -54,6 +55,29 @@ fn block(stmts: &mut Block, out: &mut Program, chain: &TrueChain, cut: usize, pa
             _ => {}
         }
         i += 1;
+    }
+}
+
+/// Candidates of six joints at once share nothing that could be computed before: their check is left to whoever takes them.
+fn unchecked(stmts: &mut Block, out: &mut Program) {
+    let (unknown, wrong) = (out.exprs.constant(0.0), out.exprs.constant(1.0));
+    for stmt in stmts {
+        match stmt {
+            Stmt::Emit(values) => {
+                let values = std::mem::take(values);
+                let angle = |v: usize| match given(&out.free, v) {
+                    Some(k) => out.exprs.intern(Node::Free(k)),
+                    None => unknown,
+                };
+                let angles = (0..values.len()).map(angle).collect();
+                *stmt = Stmt::Offer { values, angles, misses: [wrong; 2] };
+            }
+            Stmt::IfZero { then, otherwise, .. } | Stmt::Fallback { first: then, otherwise } => {
+                unchecked(then, out);
+                unchecked(otherwise, out);
+            }
+            _ => {}
+        }
     }
 }
 
