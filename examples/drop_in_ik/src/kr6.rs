@@ -681,8 +681,8 @@ pub const MAX_JOINTS: usize = 12;
 /// A solution is returned only when position (metres) and rotation (Frobenius norm) agree with the pose to this.
 pub const TOLERANCE: f64 = 1e-9;
 
-/// A solution that agrees to this is not polished.
-pub const EXACT: f64 = 1e-10;
+/// A solution that agrees to this is not polished: near singular poses what is missing shows magnified in the joints.
+pub const EXACT: f64 = 1e-13;
 
 /// Newton steps within which a polish must halve the distance that is left.
 const PATIENCE: usize = 20;
@@ -784,8 +784,8 @@ pub fn polish(
     values: &mut [f64],
     held: &[bool],
 ) -> f64 {
-    // Directions in which the tip hardly moves are left alone.
-    const LEAST_DAMPING: f64 = 1e-15;
+    // Below this a direction in which the tip hardly moves is one in which it does not.
+    const LEAST_DAMPING: f64 = 1e-22;
     let n = values.len();
     let mut at = [0.0; MAX_JOINTS];
     at[..n].copy_from_slice(values);
@@ -800,7 +800,7 @@ pub fn polish(
             let converged = distance < EXACT && distance > 0.1 * best;
             best = distance;
             values.copy_from_slice(&at[..n]);
-            if best < 1e-12 || converged {
+            if best < 0.1 * EXACT || converged {
                 break;
             }
         } else if best < EXACT || !(distance < f64::INFINITY) {
@@ -812,34 +812,14 @@ pub fn polish(
         } else if since >= patience {
             break;
         }
-        let damping = LEAST_DAMPING + 0.25 * distance * distance;
-        let mut normal = [[0.0; MAX_JOINTS]; MAX_JOINTS];
-        let mut right = [0.0; MAX_JOINTS];
-        for i in 0..n {
-            if held[i] {
-                normal[i][i] = 1.0;
-                continue;
-            }
-            for j in 0..=i {
-                if !held[j] {
-                    for k in 0..6 {
-                        normal[i][j] += columns[i][k] * columns[j][k];
-                    }
-                }
-            }
-            normal[i][i] += damping;
-            for k in 0..6 {
-                right[i] += columns[i][k] * error[k];
-            }
-        }
-        solve_symmetric(&mut normal, &mut right, n);
+        let step = damped(&columns, &error, LEAST_DAMPING + 0.25 * distance * distance, held, n);
         let mut longest = 0.0f64;
         for i in 0..n {
-            longest = longest.max(right[i].abs());
+            longest = longest.max(step[i].abs());
         }
         let scale = if longest > 0.3 { 0.3 / longest } else { 1.0 };
         for i in 0..n {
-            at[i] += scale * right[i];
+            at[i] += scale * step[i];
         }
     }
     best
@@ -892,29 +872,66 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Solves a positive definite system in place (Cholesky); `right` becomes the solution.
-fn solve_symmetric(m: &mut [[f64; MAX_JOINTS]; MAX_JOINTS], right: &mut [f64; MAX_JOINTS], n: usize) {
-    for j in 0..n {
-        for i in j..n {
-            let mut sum = m[i][j];
-            for k in 0..j {
-                sum -= m[i][k] * m[j][k];
-            }
-            m[i][j] = if i == j { sqrt(if sum > 1e-18 { sum } else { 1e-18 }) } else { sum / m[j][j] };
-        }
-    }
+/// The step `x` of the variables that makes `|columns x - error|^2 + damping |x|^2` least; held ones stay.
+///
+/// By reflections of the columns with the damping below them: where axes nearly line up the products of the normal equations would lose
+/// the digits that tell which way to go.
+fn damped(
+    columns: &[[f64; 6]; MAX_JOINTS],
+    error: &[f64; 6],
+    damping: f64,
+    held: &[bool],
+    n: usize,
+) -> [f64; MAX_JOINTS] {
+    const ROWS: usize = 6 + MAX_JOINTS;
+    let root = sqrt(damping);
+    let mut m = [[0.0; ROWS]; MAX_JOINTS];
+    let mut right = [0.0; ROWS];
+    right[..6].copy_from_slice(error);
     for i in 0..n {
-        for k in 0..i {
-            right[i] -= m[i][k] * right[k];
+        if held[i] {
+            m[i][6 + i] = 1.0;
+        } else {
+            m[i][..6].copy_from_slice(&columns[i]);
+            m[i][6 + i] = root;
         }
-        right[i] /= m[i][i];
     }
+    let mut diagonal = [0.0; MAX_JOINTS];
+    for k in 0..n {
+        // Rows of the damping of later variables are still empty.
+        let end = 7 + k;
+        let mut mirror = m[k];
+        let mut square = 0.0;
+        for x in &mirror[k..end] {
+            square += x * x;
+        }
+        let length = if mirror[k] < 0.0 { -sqrt(square) } else { sqrt(square) };
+        diagonal[k] = -length;
+        let factor = 1.0 / (square + mirror[k].abs() * length.abs());
+        mirror[k] += length;
+        let reflect = |column: &mut [f64; ROWS]| {
+            let mut sum = 0.0;
+            for r in k..end {
+                sum += mirror[r] * column[r];
+            }
+            for r in k..end {
+                column[r] -= factor * sum * mirror[r];
+            }
+        };
+        for column in &mut m[k + 1..n] {
+            reflect(column);
+        }
+        reflect(&mut right);
+    }
+    let mut step = [0.0; MAX_JOINTS];
     for i in (0..n).rev() {
-        for k in i + 1..n {
-            right[i] -= m[k][i] * right[k];
+        let mut sum = right[i];
+        for j in i + 1..n {
+            sum -= m[j][i] * step[j];
         }
-        right[i] /= m[i][i];
+        step[i] = if held[i] { 0.0 } else { sum / diagonal[i] };
     }
+    step
 }
 }
 
