@@ -278,6 +278,17 @@ pub(crate) fn palletiser() -> SerialChain {
     chain
 }
 
+/// The arm as a calibration might find it: axes off by up to 7 mrad, origins by up to 1 mm.
+pub(crate) fn calibrated(mut chain: SerialChain, rng: &mut robotc_core::rng::Rng) -> SerialChain {
+    for joint in &mut chain.joints {
+        let turn = rng.direction().into_inner() * rng.range(0.0, 0.007);
+        let shift = rng.direction().into_inner() * rng.range(0.0, 0.001);
+        joint.previous_from_joint *=
+            Pose::from_parts(Translation3::from(shift), UnitQuaternion::from_scaled_axis(turn));
+    }
+    chain
+}
+
 /// Robots of Diankov's thesis that come without a URDF, at zero, from their original files: joint axes and points as OpenRAVE's COLLADA
 /// files and Klampt's `hrp2.rob` have them.
 pub(crate) fn of_the_thesis() -> Vec<SerialChain> {
