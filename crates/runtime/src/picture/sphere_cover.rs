@@ -16,8 +16,8 @@ use crate::record::{Group, Material, Node, Part, Recording, Surface};
 const LATTICE: usize = 24;
 
 /// Rings of a ball from pole to pole, and segments of each.
-const RINGS: u32 = 8;
-const SEGMENTS: u32 = 14;
+const RINGS: u32 = 6;
+const SEGMENTS: u32 = 10;
 
 pub(super) fn draw(
     knowledge: &Knowledge,
