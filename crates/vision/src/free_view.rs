@@ -168,7 +168,8 @@ mod tests {
             let direction = |i: usize| {
                 let angle = i as f64 * std::f64::consts::TAU / DIRECTIONS as f64;
                 let normal = Vector2::new(angle.cos(), angle.sin());
-                let least = shadow.corners().iter().map(|p| normal.dot(&p.coords)).fold(f64::INFINITY, f64::min);
+                let least =
+                    shadow.corners().iter().map(|p| normal.dot(&p.coords)).fold(f64::INFINITY, f64::min);
                 HalfPlane { normal, offset: least }
             };
             (0..DIRECTIONS).map(direction).collect()

@@ -80,7 +80,9 @@ mod tests {
         let volume = ViewVolume::new(&camera, &camera.image());
         // The border is at 45 degrees: a point a metre ahead is 0.1 m from it when 0.1414 m inside.
         let placed = volume.placed(&Pose::identity(), 0.1);
-        assert!(placed.contains(&Point3::new(0.858, 0.0, 1.0)) && !placed.contains(&Point3::new(0.859, 0.0, 1.0)));
+        assert!(
+            placed.contains(&Point3::new(0.858, 0.0, 1.0)) && !placed.contains(&Point3::new(0.859, 0.0, 1.0))
+        );
         assert!(!ViewVolume::new(&camera, &ConvexPolygon::default()).contains(&Point3::new(0.0, 0.0, 1.0)));
     }
 }

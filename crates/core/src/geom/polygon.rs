@@ -50,7 +50,8 @@ impl ConvexPolygon {
         let polygon = Self { corners };
         let size = polygon.corners.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
         let rounding = 1e-9 * size * size;
-        let left = |(a, b): (Point2<f64>, Point2<f64>)| polygon.corners.iter().all(|p| turn(&a, &b, p) >= -rounding);
+        let left =
+            |(a, b): (Point2<f64>, Point2<f64>)| polygon.corners.iter().all(|p| turn(&a, &b, p) >= -rounding);
         let is_convex = size.is_finite() && polygon.edges().all(left);
         (polygon.corners.is_empty() || is_convex && polygon.area() > 0.0).then_some(polygon)
     }

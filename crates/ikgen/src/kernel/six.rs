@@ -212,7 +212,7 @@ fn solve(lines: &[Line; 6], goal: &Motion, order: Order, slack: f64, found: &mut
         match flat {
             Some((u, width)) => view = view.zoomed(u, width),
             // Real roots come in pairs: an odd number of them lacks one.
-            None => return all && found.len > before && (found.len - before) % 2 == 0,
+            None => return all && found.len > before && (found.len - before) & 1 == 0,
         }
     }
     false

@@ -217,7 +217,8 @@ mod build {
             let bodies = load(inputs, context)?;
             let masks = context.map(&inputs.preshapes, |_, (_, fingers)| {
                 let around = around(inputs, &bodies, fingers);
-                let shadow = |(pose, part): &(Pose, ConvexPart)| silhouette(&camera, part, pose, parameters.near);
+                let shadow =
+                    |(pose, part): &(Pose, ConvexPart)| silhouette(&camera, part, pose, parameters.near);
                 let shadows: Vec<ConvexPolygon> = around.iter().filter_map(shadow).collect();
                 let view = free_view(&camera.image(), &shadows, &options, context.seed());
                 Mask { shadows, view }
@@ -241,7 +242,8 @@ mod build {
                     let place = |k: u32, size: f64| (f64::from(k) + 0.437) / f64::from(STEPS) * size;
                     let pixel = Point2::new(place(i % STEPS, width), place(i / STEPS, height));
                     let ray = artefact.camera.ray(&pixel);
-                    let way = |(pose, part): &(Pose, ConvexPart)| way_inside(part, pose, &ray, parameters.near);
+                    let way =
+                        |(pose, part): &(Pose, ConvexPart)| way_inside(part, pose, &ray, parameters.near);
                     let longest = around.iter().map(way).fold(0.0, f64::max);
                     let is_hidden = mask.shadows.iter().any(|shadow| shadow.contains(&pixel));
                     let is_wrong = if longest > 1e-6 {
@@ -251,7 +253,9 @@ mod build {
                         longest == 0.0 && is_hidden
                     };
                     if is_wrong {
-                        let seen = format!("the ray meets {longest} m of the robot, and it is called hidden: {is_hidden}");
+                        let seen = format!(
+                            "the ray meets {longest} m of the robot, and it is called hidden: {is_hidden}"
+                        );
                         return Err(BuildError::Check(format!("preshape {name}, pixel {pixel}: {seen}")));
                     }
                 }

@@ -1,8 +1,8 @@
 //! The artefact kinds: one file each, one line each in [`ALL`].
 
 mod arm_pairs;
-mod camera_view;
 mod caging_set;
+mod camera_view;
 mod chain_reach;
 mod convex_parts;
 mod grasp_set;
@@ -15,8 +15,8 @@ mod self_collision_pairs;
 mod sphere_cover;
 
 pub use arm_pairs::{ArmPairs, LinkPairs};
-pub use camera_view::{CameraView, CameraViewParameters, CameraViews, Mask};
 pub use caging_set::{Cage, CageHold, CagingParameters, CagingSet};
+pub use camera_view::{CameraView, CameraViewParameters, CameraViews, Mask};
 pub use chain_reach::{ChainReach, ReachSphere};
 pub use convex_parts::{ConvexParts, ConvexPartsParameters};
 pub use grasp_set::{GraspParameters, GraspSet};
