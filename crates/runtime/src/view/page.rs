@@ -166,7 +166,8 @@ struct ScenePart {
 #[derive(Serialize)]
 struct SceneLines {
     width: f32,
-    timed: bool,
+    /// Whether it takes the colours of stages instead of its own.
+    staged: bool,
     ends: Span,
     colours: Span,
 }
@@ -270,11 +271,11 @@ fn scene_node<'a>(node: &'a Node, block: &mut Block) -> SceneNode<'a> {
         pose: numbers(&node.track.at(0.0)),
         track,
         parts: parts.collect(),
-        lines: node.lines.iter().map(|l| scene_lines(l, block)).collect(),
+        lines: node.lines.iter().map(|l| scene_lines(l, node.group, block)).collect(),
     }
 }
 
-fn scene_lines(lines: &LineSet, block: &mut Block) -> SceneLines {
+fn scene_lines(lines: &LineSet, group: Group, block: &mut Block) -> SceneLines {
     let ends = || lines.segments.iter().flatten().map(|&i| i as usize);
     // Points without a time were always there.
     let time = |point: usize| lines.times.get(point).copied().unwrap_or(f32::MIN);
@@ -285,7 +286,7 @@ fn scene_lines(lines: &LineSet, block: &mut Block) -> SceneLines {
     let colours = ends().flat_map(|i| lines.colour(i)).map(|c| [(c.clamp(0.0, 1.0) * 255.0).round() as u8]);
     SceneLines {
         width: lines.width,
-        timed: !lines.times.is_empty(),
+        staged: group == Group::Path && !lines.times.is_empty(),
         ends: block.put_f32(places),
         colours: block.put(colours),
     }

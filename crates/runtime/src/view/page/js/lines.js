@@ -4,7 +4,7 @@ import { matrixOf } from './math.js';
 import { buffer } from './gl.js';
 import { stageAt } from './scene.js';
 
-/** Lines with times take the colours of the stages in which they were drawn. */
+/** The way of the tool takes the colours of the stages in which it was drawn. */
 function stageColours(scene, { ends, colours }) {
   const painted = colours.slice();
   for (let end = 0; end < ends.length / 4; end++) {
@@ -28,7 +28,7 @@ export class Lines {
         group: node.group,
         width: lines.width,
         count: lines.ends.length / 8,
-        array: this.upload(lines.ends, lines.timed ? stageColours(scene, lines) : lines.colours),
+        array: this.upload(lines.ends, lines.staged ? stageColours(scene, lines) : lines.colours),
       })),
     );
   }
