@@ -6,9 +6,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use robotc_core::{Diagnostics, Severity, Sources};
 
-create_exception!(_robotc, SpecificationError, PyValueError, "A specification cannot be used.");
-create_exception!(_robotc, CompileError, PyException, "An artefact could not be computed.");
-create_exception!(_robotc, PlanError, PyException, "The planner found no plan; the message says why.");
+create_exception!(robotc, SpecificationError, PyValueError, "A specification cannot be used.");
+create_exception!(robotc, CompileError, PyException, "An artefact could not be computed.");
+create_exception!(robotc, PlanError, PyException, "The planner found no plan; the message says why.");
 
 pub(crate) fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = m.py();

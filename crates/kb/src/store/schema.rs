@@ -39,7 +39,28 @@ const TABLES: &str = "
 /// How long a statement waits for another process, milliseconds.
 const BUSY_MS: u32 = 30_000;
 
+/// How long to wait before trying again to open, milliseconds.
+const PAUSE_MS: u32 = 10;
+
+/// Opens the database, made if there is none.
 pub(super) fn open(path: &Path) -> Result<Connection, StoreError> {
+    // A connection has to be alone to change the journal, and SQLite refuses at once where it would wait otherwise.
+    for _ in 0..BUSY_MS / PAUSE_MS {
+        match try_open(path) {
+            Err(StoreError::Database(error)) if is_busy(&error) => {
+                std::thread::sleep(std::time::Duration::from_millis(u64::from(PAUSE_MS)));
+            }
+            result => return result,
+        }
+    }
+    try_open(path)
+}
+
+fn is_busy(error: &rusqlite::Error) -> bool {
+    error.sqlite_error_code() == Some(rusqlite::ErrorCode::DatabaseBusy)
+}
+
+fn try_open(path: &Path) -> Result<Connection, StoreError> {
     let mut connection = Connection::open(path)?;
     connection.busy_timeout(std::time::Duration::from_millis(u64::from(BUSY_MS)))?;
     // WAL: readers never wait for the writer. FULL: a committed transaction survives a power cut.
