@@ -27,6 +27,14 @@ pub struct Robot {
     pub weights: Vec<(DofIdx, f64)>,
 }
 
+impl Robot {
+    /// The gripper whose palm a camera is fixed to, if it is to one.
+    pub fn gripper_of_camera(&self, camera: &Camera) -> Option<&Gripper> {
+        let rigid = self.model.rigid_group(camera.link);
+        self.grippers.iter().find(|gripper| rigid.contains(&gripper.palm))
+    }
+}
+
 /// A serial manipulator.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arm {

@@ -71,8 +71,7 @@ impl Solver {
     fn batch(&self, base_from_tip: &[Pose], free: &[f64], out: &mut Batch, once: bool) {
         let (n, all, given) = (self.ranges.len(), self.program.variables, self.program.free.len());
         assert_eq!(free.len(), given * base_from_tip.len(), "one value for each free variable of each pose");
-        (out.width, out.values, out.ends) =
-            (n, std::mem::take(&mut out.values), std::mem::take(&mut out.ends));
+        out.width = n;
         out.values.clear();
         out.ends.clear();
         let mut registers = std::mem::take(&mut out.registers);

@@ -42,7 +42,7 @@ pub(crate) fn offer(depot: &dyn Depot, artefact: Archived) -> Result<(), Transfe
     let bytes = Archive::new(vec![artefact]).encode();
     let mut there = entry.clone();
     if !depot.put_new(&name, &bytes)? {
-        match depot.get(&name)?.and_then(|bytes| read(&bytes, &entry.key)) {
+        match read(depot, &entry.key)? {
             Some(other) => there = Entry::of(&other),
             None => depot.put(&name, &bytes)?,
         }
@@ -61,12 +61,19 @@ pub(crate) fn offer(depot: &dyn Depot, artefact: Archived) -> Result<(), Transfe
     }
 }
 
-/// The artefact of a depot's object; `None` unless it is whole and has this key.
-fn read(bytes: &[u8], key: &Key) -> Option<Archived> {
-    match Archive::read(bytes).ok()?.artefacts() {
+/// The artefact that a depot has for a key; `None` unless it is there whole.
+fn read(depot: &dyn Depot, key: &Key) -> Result<Option<Archived>, DepotError> {
+    let Some(bytes) = depot.get(&name(key))? else { return Ok(None) };
+    let archive = Archive::read(&bytes).ok();
+    Ok(archive.and_then(|archive| match archive.artefacts() {
         [artefact] if artefact.record.key() == *key => Some(artefact.clone()),
         _ => None,
-    }
+    }))
+}
+
+/// The keys of all artefacts of a depot.
+fn keys(depot: &dyn Depot) -> Result<Vec<Key>, DepotError> {
+    Ok(depot.names(FOLDER)?.iter().filter_map(|name| name.parse().ok()).collect())
 }
 
 /// Brings an artefact into the store: its content, or `None` when the depot does not have it whole.
@@ -76,7 +83,7 @@ pub fn bring(
     depot: &dyn Depot,
     key: &Key,
 ) -> Result<Option<ContentHash>, TransferError> {
-    let Some(artefact) = depot.get(&name(key))?.and_then(|bytes| read(&bytes, key)) else { return Ok(None) };
+    let Some(artefact) = read(depot, key)? else { return Ok(None) };
     let content = Entry::of(&artefact).content;
     store.take(writer, &[artefact])?;
     Ok(Some(content))
@@ -85,8 +92,7 @@ pub fn bring(
 /// Brings every artefact of the depot that the store lacks; the number of those that are not whole.
 pub fn bring_all(store: &Store, depot: &dyn Depot) -> Result<usize, TransferError> {
     let mut damaged = 0;
-    for name in depot.names(FOLDER)? {
-        let Ok(key) = name.parse::<Key>() else { continue };
+    for key in keys(depot)? {
         if store.lookup(&key)?.is_none() {
             damaged += usize::from(bring(store, &store.writer()?, depot, &key)?.is_none());
         }
@@ -101,8 +107,8 @@ pub fn catalogue(depot: &dyn Depot) -> Result<Vec<Entry>, DepotError> {
         return Ok(entries);
     }
     let mut entries = Vec::new();
-    for key in depot.names(FOLDER)?.iter().filter_map(|name| name.parse::<Key>().ok()) {
-        entries.extend(depot.get(&name(&key))?.and_then(|bytes| read(&bytes, &key)).map(|a| Entry::of(&a)));
+    for key in keys(depot)? {
+        entries.extend(read(depot, &key)?.map(|artefact| Entry::of(&artefact)));
     }
     entries.sort();
     Ok(entries)
@@ -132,10 +138,9 @@ pub fn verify(depot: &dyn Depot) -> Result<Inventory, DepotError> {
     let entered = |key: &Key| entries.iter().find(|entry| entry.key == *key);
     let mut inventory = Inventory::default();
     let mut seen = BTreeSet::new();
-    for key in depot.names(FOLDER)?.iter().filter_map(|name| name.parse::<Key>().ok()) {
+    for key in keys(depot)? {
         seen.insert(key);
-        let found = depot.get(&name(&key))?.and_then(|bytes| read(&bytes, &key)).map(|a| Entry::of(&a));
-        match found {
+        match read(depot, &key)?.map(|artefact| Entry::of(&artefact)) {
             Some(entry) if entered(&key).is_none_or(|other| other.content == entry.content) => {
                 inventory.whole += 1;
                 inventory.bytes += entry.size;

@@ -106,9 +106,7 @@ impl Kind for CameraView {
         let project = planner.project();
         let robot = project.robot();
         let camera = &robot.cameras[subject.0];
-        let rigid = robot.model.rigid_group(camera.link);
-        let gripper = robot.grippers.iter().find(|gripper| rigid.contains(&gripper.palm));
-        let (mechanism, links, fingers, preshapes) = match gripper {
+        let (mechanism, links, fingers, preshapes) = match robot.gripper_of_camera(camera) {
             None => {
                 let (mechanism, links) = Mechanism::rigid(&robot.model, camera.link)?;
                 (mechanism, links, Vec::new(), vec![(String::new(), Vec::new())])

@@ -65,8 +65,13 @@ impl Drive {
 impl Manipulation<'_> {
     /// The arm as it stands with the base where it is in `q`.
     pub(super) fn arm_at(&self, q: &Configuration) -> crate::arm::ArmModel {
+        self.arm.on(self.world_from_arm(q))
+    }
+
+    /// Where the base link of the arm is.
+    fn world_from_arm(&self, q: &Configuration) -> Pose {
         let base = self.task.robot.arms[self.task.arm].base;
-        self.arm.on(self.scene.world_from_robot() * self.kinematics.root_from_link(q, base))
+        self.scene.world_from_robot() * self.kinematics.root_from_link(q, base)
     }
 }
 
@@ -91,7 +96,7 @@ pub(super) fn plan_driving(
     let targets = Targets::of(cx, scene, seed.split("destinations"));
     let arms = [PlacementArm { cost: 1.0, grasps: targets.grasps.clone() }];
     let mut standing = Standing { cx, scene, drive: &drive, folded: &folded, rng: seed.split("free").rng() };
-    let mut bases = ReachedBases { cx, targets: &targets };
+    let mut bases = ReachedBases { cx, drive: &drive, targets: &targets };
     let options = PlacementOptions { places: 20, max_places: 4000 };
     let mut places = BasePlacement::new(&mut standing, &mut bases, &arms, options, seed.split("places"));
     let mut last = missed;
@@ -231,6 +236,7 @@ impl Targets {
 /// Bases from which the map of the arm's reach says that a grasp and, with it, a destination are within reach.
 struct ReachedBases<'c, 'a> {
     cx: &'c GoalContext<'a>,
+    drive: &'c Drive,
     targets: &'c Targets,
 }
 
@@ -240,12 +246,8 @@ impl ReachedBases<'_, '_> {
         let problem = &self.cx.problem;
         let Some(map) = problem.reachability else { return 1.0 };
         let mut q = problem.start.clone();
-        if let Base::Planar { joints: Some(dofs), .. } = &self.cx.robot().base {
-            q.set(dofs, base);
-        }
-        let root_from_base =
-            problem.kinematics.root_from_link(&q, self.cx.robot().arms[problem.task.arm].base);
-        let world_from_base = problem.scene.world_from_robot() * root_from_base;
+        q.set(&self.drive.dofs, base);
+        let world_from_base = problem.world_from_arm(&q);
         map.density(&(world_from_base.inv_mul(world_from_tool) * problem.arm.tool_from_tip()))
     }
 }

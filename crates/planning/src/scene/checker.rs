@@ -326,11 +326,8 @@ impl EdgeChecker for RobotChecker<'_> {
 
     fn describe(&self, obstruction: Obstruction) -> String {
         match obstruction {
-            Obstruction::Bounds => "a joint limit is exceeded".into(),
             Obstruction::Constraint => "the held object tilts too far".into(),
-            Obstruction::Contact(n) => {
-                self.scene.describe(obstruction).unwrap_or_else(|| format!("contact {n}"))
-            }
+            Obstruction::Bounds | Obstruction::Contact(_) => self.scene.explain(obstruction, "a joint limit"),
         }
     }
 }

@@ -40,8 +40,7 @@ pub(super) fn draw(
         let views = knowledge.load::<CameraView>(subject)?;
         let camera = &robot.cameras[subject.0];
         let world_from_camera = world_from_robot * links.root_from(camera.link) * camera.link_from_camera;
-        let rigid = robot.model.rigid_group(camera.link);
-        let gripper = robot.grippers.iter().find(|gripper| rigid.contains(&gripper.palm));
+        let gripper = robot.gripper_of_camera(camera);
         for mask in 0..views.masks.len() {
             let name = match gripper {
                 Some(gripper) => format!("{}, {}", camera.name, gripper.preshapes[mask].name),

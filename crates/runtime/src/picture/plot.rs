@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::palette;
+use crate::view::escaped;
 
 /// Steps of the colours.
 const SHADES: usize = 24;
@@ -211,10 +212,6 @@ fn number(value: f64) -> String {
     let text = format!("{value:.digits$}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text.is_empty() || text == "-0" { "0".to_owned() } else { text.to_owned() }
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

@@ -10,4 +10,4 @@ mod svg;
 pub use camera::Camera;
 pub use glb::glb;
 pub use page::html;
-pub use svg::{svg, telling_moment};
+pub use svg::{escaped, svg, telling_moment};

@@ -215,7 +215,8 @@ fn shaded([r, g, b, _]: [f32; 4], normal: &Vector3<f64>, towards_eye: &Vector3<f
     })
 }
 
-fn escaped(text: &str) -> String {
+/// Text as markup has it.
+pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use robotc_runtime::view::escaped;
+
 use super::table::Table;
 
 /// A page, from top to bottom.
@@ -34,8 +36,8 @@ const BAR: f64 = 380.0;
 
 impl Page {
     pub(super) fn new(title: &str, about: &str) -> Self {
-        let mut page = Self { title: escape(title), body: String::new() };
-        page.add(&format!("<h1>{}</h1>\n<p>{}</p>\n", escape(title), escape(about)));
+        let mut page = Self { title: escaped(title), body: String::new() };
+        page.add(&format!("<h1>{}</h1>\n<p>{}</p>\n", escaped(title), escaped(about)));
         page
     }
 
@@ -57,7 +59,7 @@ impl Page {
         let mut svg = format!("<svg width=\"{}\" height=\"{height}\" role=\"img\">\n", BAR + 240.0);
         let mut y = 14;
         for (group, values) in groups {
-            let _ = writeln!(svg, "<text x=\"0\" y=\"{y}\" class=\"group\">{}</text>", escape(group));
+            let _ = writeln!(svg, "<text x=\"0\" y=\"{y}\" class=\"group\">{}</text>", escaped(group));
             y += 6;
             for (k, (&value, name)) in values.iter().zip(names).enumerate() {
                 let (width, colour) = ((BAR * value / most).max(1.0), COLOURS[k % COLOURS.len()]);
@@ -68,13 +70,13 @@ impl Page {
                     width + 6.0,
                     y + 10,
                     number(value),
-                    escape(name)
+                    escaped(name)
                 );
                 y += 16;
             }
             y += 20;
         }
-        self.add(&format!("<figure><figcaption>{}</figcaption>\n{svg}</svg></figure>\n", escape(title)));
+        self.add(&format!("<figure><figcaption>{}</figcaption>\n{svg}</svg></figure>\n", escaped(title)));
         self
     }
 
@@ -113,12 +115,12 @@ impl Page {
             let _ = writeln!(
                 keys,
                 "<li><span style=\"background:{colour}\"></span>{}: {count}</li>",
-                escape(name)
+                escaped(name)
             );
         }
         self.add(&format!(
             "<figure><figcaption>{}</figcaption>\n{svg}</svg>\n<ul class=\"legend\">{keys}</ul></figure>\n",
-            escape(title)
+            escaped(title)
         ));
         self
     }
@@ -126,7 +128,7 @@ impl Page {
     /// All figures.
     pub(super) fn with_table(mut self, table: &Table) -> Self {
         let cells = |tag: &str, row: &mut dyn Iterator<Item = &str>| {
-            row.fold(String::new(), |line, cell| line + &format!("<{tag}>{}</{tag}>", escape(cell)))
+            row.fold(String::new(), |line, cell| line + &format!("<{tag}>{}</{tag}>", escaped(cell)))
         };
         let mut rows = format!("<tr>{}</tr>\n", cells("th", &mut table.header.iter().copied()));
         for row in &table.rows {
@@ -141,7 +143,7 @@ impl Page {
         let page = html.replace('&', "&amp;").replace('"', "&quot;");
         self.add(&format!(
             "<figure><figcaption>{}</figcaption>\n<iframe title=\"replay\" srcdoc=\"{page}\"></iframe></figure>\n",
-            escape(title)
+            escaped(title)
         ));
         self
     }
@@ -182,10 +184,6 @@ fn number(value: f64) -> String {
     };
     let text = format!("{value:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

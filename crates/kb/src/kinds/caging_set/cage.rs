@@ -150,47 +150,11 @@ impl Caged<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use nalgebra::Unit;
     use robotc_core::geom::box_part;
-    use robotc_core::ids::Idx;
-    use robotc_core::model::{DynamicLimits, JointMotion, Kinematics, Origin, RobotBuilder};
-    use robotc_core::robot::{Gripper, Preshape};
-    use robotc_core::{DofIdx, LinkIdx};
 
     use super::*;
-
-    /// A palm with two jaws that open to 80 mm along y; the second follows the first.
-    fn jaws() -> (Kinematics, Gripper, Vec<ConvexParts>) {
-        let mut b = RobotBuilder::new("jaws");
-        for name in ["palm", "left", "right"] {
-            b.link(name, vec![], vec![], None);
-        }
-        let limits = (0.0, 0.04, false, DynamicLimits::DEFAULT);
-        let slide = JointMotion::Prismatic;
-        b.moving("left", slide, "palm", "left", Origin::default(), [0.0, 1.0, 0.0], limits, None);
-        let follow = Some(("left".to_owned(), 1.0, 0.0));
-        b.moving("right", slide, "palm", "right", Origin::default(), [0.0, -1.0, 0.0], limits, follow);
-        let pad =
-            |y: f64| box_part(Vector3::new(0.02, 0.01, 0.05)).transformed(&Pose::translation(0.0, y, 0.075));
-        let parts = vec![
-            ConvexParts::new(vec![box_part(Vector3::new(0.06, 0.2, 0.1))]),
-            ConvexParts::new(vec![pad(0.005)]),
-            ConvexParts::new(vec![pad(-0.005)]),
-        ];
-        let gripper = Gripper {
-            name: "jaws".into(),
-            palm: LinkIdx::new(0),
-            palm_from_tool: Pose::translation(0.0, 0.0, 0.09),
-            approach_in_tool: Vector3::z_axis(),
-            dofs: vec![DofIdx::new(0)],
-            closing: vec![-1.0],
-            fingers: vec![LinkIdx::new(1), LinkIdx::new(2)],
-            preshapes: vec![Preshape { name: "open".into(), values: vec![0.04] }],
-        };
-        (Kinematics::new(Arc::new(b.build().unwrap())), gripper, parts)
-    }
+    use crate::kinds::grip::jaws::jaws;
 
     /// A bar along y, 15 cm in front of a panel that slides along z (a drawer): the hand comes along -z.
     fn drawer() -> ConvexParts {
@@ -210,7 +174,9 @@ mod tests {
 
     fn attempt(parts: &ConvexParts, motion: MechanismMotion, start: &Start) -> Option<Cage> {
         let (kinematics, gripper, shapes) = jaws();
-        let hand = Hand::new(&kinematics, &gripper, |l| shapes.get(l.index()));
+        let hand = Hand::new(&kinematics, &gripper, |l| {
+            shapes.iter().find(|(link, _)| *link == l).map(|(_, parts)| parts)
+        });
         let options = CageOptions {
             looseness: 0.3,
             slack: 0.04,

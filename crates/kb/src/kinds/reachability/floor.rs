@@ -1,7 +1,8 @@
 //! What stands on the floor, and whether a base fits between it.
 
+use nalgebra::{Point2, Vector2};
 use robotc_core::Pose;
-use robotc_core::geom::ConvexParts;
+use robotc_core::geom::{ConvexParts, ConvexPolygon};
 use robotc_planning::placement::Prism;
 
 use super::placement::Placement;
@@ -15,11 +16,11 @@ pub struct Floor {
     outlines: Vec<Outline>,
 }
 
-/// A convex polygon, counter-clockwise, with a circle around it.
+/// An outline with a circle around it.
 #[derive(Debug, Clone, PartialEq)]
 struct Outline {
-    corners: Vec<[f64; 2]>,
-    centre: [f64; 2],
+    polygon: ConvexPolygon,
+    centre: Point2<f64>,
     radius: f64,
 }
 
@@ -33,7 +34,7 @@ impl Floor {
                 let lowest = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
                 let highest = points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max);
                 if lowest < base.heights.1 && highest > base.heights.0 {
-                    outlines.push(Outline::around(points.iter().map(|p| [p.x, p.y]).collect()));
+                    outlines.push(Outline::around(points.iter().map(|p| p.xy())));
                 }
             }
         }
@@ -46,7 +47,7 @@ impl Floor {
         let [x, y] = placement.position;
         let reach = base.footprint.iter().map(|[a, b]| a * a + b * b).fold(0.0, f64::max).sqrt();
         let near = |outline: &&Outline| {
-            let (dx, dy) = (outline.centre[0] - x, outline.centre[1] - y);
+            let (dx, dy) = (outline.centre.x - x, outline.centre.y - y);
             let touching = reach + outline.radius;
             dx * dx + dy * dy <= touching * touching
         };
@@ -54,52 +55,22 @@ impl Floor {
         if near.peek().is_none() {
             return true;
         }
-        let placed = |[a, b]: &[f64; 2]| [x + cosine * a - sine * b, y + sine * a + cosine * b];
-        let footprint: Vec<[f64; 2]> = base.footprint.iter().map(placed).collect();
-        near.all(|outline| apart(&footprint, &outline.corners) || apart(&outline.corners, &footprint))
+        let placed = |[a, b]: &[f64; 2]| Point2::new(x + cosine * a - sine * b, y + sine * a + cosine * b);
+        let footprint = ConvexPolygon::hull_of(base.footprint.iter().map(placed));
+        near.all(|outline| footprint.is_apart_from(&outline.polygon))
     }
 }
 
 impl Outline {
-    /// The convex hull of points (Andrew's monotone chain).
-    fn around(mut points: Vec<[f64; 2]>) -> Self {
-        points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-        points.dedup();
-        let side = |points: &mut dyn Iterator<Item = [f64; 2]>| {
-            let mut chain: Vec<[f64; 2]> = Vec::new();
-            for point in points {
-                while chain.len() > 1 && turn(chain[chain.len() - 2], chain[chain.len() - 1], point) <= 0.0 {
-                    chain.pop();
-                }
-                chain.push(point);
-            }
-            chain.pop();
-            chain
-        };
-        let mut corners = side(&mut points.iter().copied());
-        corners.extend(side(&mut points.iter().rev().copied()));
-        if corners.is_empty() {
-            corners = points;
-        }
-        let count = corners.len() as f64;
-        let centre = [0, 1].map(|axis| corners.iter().map(|corner| corner[axis]).sum::<f64>() / count);
-        let away = |corner: &[f64; 2]| (corner[0] - centre[0]).hypot(corner[1] - centre[1]);
-        let radius = corners.iter().map(away).fold(0.0, f64::max);
-        Self { corners, centre, radius }
+    /// The convex hull of points.
+    fn around(points: impl Iterator<Item = Point2<f64>>) -> Self {
+        let polygon = ConvexPolygon::hull_of(points);
+        let corners = polygon.corners();
+        let sum: Vector2<f64> = corners.iter().map(|corner| corner.coords).sum();
+        let centre = Point2::from(sum / corners.len() as f64);
+        let radius = corners.iter().map(|corner| (corner - centre).norm()).fold(0.0, f64::max);
+        Self { polygon, centre, radius }
     }
-}
-
-/// Twice the area of a triangle, positive when it goes round counter-clockwise.
-fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-}
-
-/// Whether some edge of counter-clockwise `a` has all of `b` on its outer side.
-fn apart(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
-    (0..a.len()).any(|i| {
-        let (from, to) = (a[i], a[(i + 1) % a.len()]);
-        from != to && b.iter().all(|&corner| turn(from, to, corner) < 0.0)
-    })
 }
 
 #[cfg(test)]
