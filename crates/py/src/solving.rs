@@ -102,7 +102,10 @@ pub(crate) fn free_intervals<'py>(
     let found = py
         .detach(|| solver.free_intervals(&pose, &free, k, &preferences, &options))
         .map_err(|error| PyValueError::new_err(error.to_string()))?;
-    let (Completeness::ToWidth(width) | Completeness::Sampled(width)) = found.completeness;
+    let width = match found.completeness {
+        Completeness::Complete => 0.0,
+        Completeness::ToWidth(width) | Completeness::Sampled(width) => width,
+    };
     let rows: Vec<Vec<f64>> = found.intervals.iter().map(|ends| ends.to_vec()).collect();
     Ok((arrays::rows(py, &rows, 2), width))
 }

@@ -12,7 +12,7 @@ mod true_chain;
 
 pub use batch::Batch;
 pub use bytecode::{Bytecode, Candidate, TooLarge};
-pub use redundancy::{Completeness, FreeIntervals, RedundancyOptions};
+pub use redundancy::{Completeness, FreeIntervals, RedundancyOptions, Side, SwivelBranch};
 pub use solver::{Engine, LoadError, Solver};
 pub use true_chain::TrueChain;
 

@@ -20,26 +20,31 @@ impl System for Files {
     }
 }
 
-#[test]
-fn real_arms_are_solved() {
+/// The chain of an arm of the shared data; `None`, and said so, where the data are not.
+pub(crate) fn real(file: &str, base: &str, tip: &str) -> Option<SerialChain> {
     let folder = std::env::var_os("ROBOTC_SHARED_DATA")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data"), PathBuf::from);
     if !folder.join("arms").exists() {
         println!("skipped: shared data not present");
-        return;
+        return None;
     }
+    let options = LoadOptions { meshes: MeshPolicy::Ignore, ..LoadOptions::default() };
+    let path = folder.join("arms").join(format!("{file}.urdf"));
+    let (model, _) = load(&Files, &mut Sources::new(), &path, &options);
+    let kinematics = Kinematics::new(model.unwrap().into());
+    let link = |name| kinematics.model().link_named(name).unwrap();
+    Some(SerialChain::between(&kinematics, link(base), link(tip)).unwrap())
+}
+
+#[test]
+fn real_arms_are_solved() {
     for (file, base, tip, class) in [
         ("kuka_kr10r1420", "base_link", "tool0", "6R spherical wrist, axes 2 and 3 parallel"),
         ("ur_ur5e", "world", "tool0", "6R three parallel axes 2-3-4"),
         ("franka_panda", "panda_link0", "panda_link8", "7R spherical shoulder, axes 1 and 2 meeting"),
         ("fetch_fetch", "torso_lift_link", "gripper_link", "7R spherical wrist, general shoulder"),
     ] {
-        let options = LoadOptions { meshes: MeshPolicy::Ignore, ..LoadOptions::default() };
-        let path = folder.join("arms").join(format!("{file}.urdf"));
-        let (model, _) = load(&Files, &mut Sources::new(), &path, &options);
-        let kinematics = Kinematics::new(model.unwrap().into());
-        let link = |name| kinematics.model().link_named(name).unwrap();
-        let chain = SerialChain::between(&kinematics, link(base), link(tip)).unwrap();
+        let Some(chain) = real(file, base, tip) else { return };
         let compiled = compile(&chain, &Options::default()).unwrap_or_else(|r| panic!("{file}: {r}"));
         assert!(compiled.class.starts_with(class), "{file}: {}", compiled.class);
         let report = prove(&compiled, 0.0, &ProofOptions { poses: 200, seed: 1 }, &|| 0.0);

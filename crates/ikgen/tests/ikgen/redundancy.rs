@@ -3,10 +3,12 @@
 use robotc_core::Seed;
 use robotc_core::ik::{IkSolutions, Limits, Preferences};
 use robotc_core::model::SerialChain;
-use robotc_ikgen::run::{Completeness, RedundancyOptions};
+use robotc_ikgen::check;
+use robotc_ikgen::run::{Completeness, RedundancyOptions, Side};
 use robotc_ikgen::{GoalType, Options, Solver, compile};
 
 use crate::arms;
+use crate::real_arms::real;
 
 /// Points of a dense sampling.
 const POINTS: usize = 1000;
@@ -41,6 +43,7 @@ fn agrees(chain: &SerialChain, goal: GoalType, poses: usize) -> (usize, f64) {
         assert!(found.contains(vector[own]), "{}: {} {found:?}", chain.name, vector[own]);
         let (low, high) = (chain.variables[own].lower, chain.variables[own].upper);
         let near = match found.completeness {
+            Completeness::Complete => 1e-9,
             Completeness::ToWidth(width) => width,
             Completeness::Sampled(step) => step,
         };
@@ -75,7 +78,9 @@ fn agrees(chain: &SerialChain, goal: GoalType, poses: usize) -> (usize, f64) {
 
 #[test]
 fn intervals_are_what_sampling_finds() {
-    for chain in [arms::panda(), arms::iiwa(), arms::fetch()] {
+    let (count, width) = agrees(&limited(arms::iiwa()), GoalType::Transform6D, 20);
+    assert!(count >= 20 && width == 1e-9, "{count} {width}");
+    for chain in [arms::panda(), arms::fetch()] {
         let (count, width) = agrees(&limited(chain.clone()), GoalType::Transform6D, 6);
         println!("{}: {count} intervals of 6 poses, to {width:e}", chain.name);
         assert!(count >= 6 && width <= 1e-5, "{} {count} {width}", chain.name);
@@ -106,4 +111,111 @@ fn limits_are_those_that_are_asked_for() {
     let far = robotc_core::Pose::translation(9.0, 0.0, 0.0);
     let none = solver.free_intervals(&far, &[0.0], 0, &Preferences::default(), &options).unwrap();
     assert!(none.is_empty() && none.nearest(0.0).is_none() && none.spread(3).is_empty());
+}
+
+/// Arms with spherical shoulder and wrist whose descriptions are exact.
+const SPHERICAL: [(&str, &str, &str); 4] = [
+    ("barrett_wam7", "world", "wam/wrist_palm_link"),
+    ("kuka_lwr4", "box", "lwr_7_link_dummy"),
+    ("schunk_lwa4d", "world", "arm_ee_link"),
+    ("yaskawa_sia10d", "world", "link_t"),
+];
+
+/// Every solution of the intervals is one, and every solution is of the intervals.
+fn swivels(chain: &SerialChain, vectors: &[Vec<f64>]) -> [usize; 2] {
+    let compiled = compile(chain, &Options::default()).unwrap();
+    let solver = compiled.solver();
+    let preferences = Preferences::default();
+    let (mut intervals, mut aligned) = (0, 0);
+    for vector in vectors {
+        let pose = chain.forward(vector);
+        let branches = solver.swivel(&pose, &preferences).unwrap().expect("shoulder and wrist are spherical");
+        for branch in &branches {
+            aligned += usize::from([branch.shoulder, branch.wrist].contains(&Side::Aligned));
+            assert!(branch.intervals.is_sorted_by(|a, b| a[0] <= a[1] && a[1] < b[0]));
+            for [low, high] in &branch.intervals {
+                intervals += 1;
+                for k in 0..=20 {
+                    let psi = low + (high - low) * f64::from(k) / 20.0;
+                    // Rounding at an end.
+                    let Some(joints) = branch.joints(psi.min(*high)) else {
+                        assert!(k == 0 || k == 20, "{}: {psi} {branch:?}", chain.name);
+                        continue;
+                    };
+                    let error = check::distance(chain, &joints, &pose);
+                    assert!(error < 1e-9, "{}: {error:e} {vector:?} {branch:?}", chain.name);
+                    for (value, variable) in joints.iter().zip(&chain.variables) {
+                        assert!(variable.lower <= *value && *value <= variable.upper);
+                    }
+                }
+            }
+        }
+        let reached = |joint: usize, value: f64| {
+            let own = branches.iter().flat_map(|b| b.joint_intervals(joint)).collect::<Vec<_>>();
+            own.iter().any(|[low, high]| low - 1e-9 <= value && value <= high + 1e-9)
+        };
+        for (joint, value) in vector.iter().enumerate() {
+            assert!(reached(joint, *value), "{}: joint {joint} {vector:?} {branches:#?}", chain.name);
+        }
+    }
+    [intervals, aligned]
+}
+
+/// No sample of the free joint leads nearer to a joint vector than the search does.
+#[test]
+fn the_nearest_solution_of_all_is_found() {
+    let mut rng = Seed::new(8).rng();
+    for chain in [limited(arms::iiwa()), limited(arms::panda())] {
+        let solver = compile(&chain, &Options::default()).unwrap().solver();
+        let ranges = robotc_core::ik::VariableRange::of(&chain);
+        let options = RedundancyOptions::default();
+        for _ in 0..5 {
+            let mut inside = || chain.variables.iter().map(|v| rng.range(v.lower, v.upper)).collect();
+            let (vector, near): (Vec<f64>, Vec<f64>) = (inside(), inside());
+            let pose = chain.forward(&vector);
+            let preferences = Preferences { near: Some(near.clone()), ..Preferences::default() };
+            let found = solver.solve_nearest(&pose, &[0.0], 0, &preferences, &options).unwrap().unwrap();
+            // What is beyond a limit by rounding is moved onto it.
+            assert!(check::distance(&chain, &found, &pose) < 1e-8);
+            let away = |q: &[f64]| preferences.squared_distance(&ranges, q, &near);
+            let mut out = IkSolutions::new();
+            let intervals =
+                solver.solve_spread(&pose, &[0.0], 0, 500, &preferences, &options, &mut out).unwrap();
+            assert!(out.len() >= 500 && out.iter().all(|q| intervals.contains(q[6])));
+            let least = out.iter().map(away).fold(f64::INFINITY, f64::min);
+            assert!(away(&found) <= least + 1e-9, "{}: {} {least}", chain.name, away(&found));
+            // From where it is the arm stays.
+            let home = Preferences { near: Some(vector.clone()), ..Preferences::default() };
+            let stays = solver.solve_nearest(&pose, &[0.0], 0, &home, &options).unwrap().unwrap();
+            assert!(stays.iter().zip(&vector).all(|(a, b)| (a - b).abs() < 1e-6));
+        }
+    }
+}
+
+#[test]
+fn swivel_angles_are_all_there_are() {
+    let mut rng = Seed::new(5).rng();
+    let chain = limited(arms::iiwa());
+    let inside = |rng: &mut robotc_core::rng::Rng, chain: &SerialChain| -> Vec<f64> {
+        chain.variables.iter().map(|v| rng.range(v.lower.max(-3.1), v.upper.min(3.1))).collect()
+    };
+    let vectors: Vec<Vec<f64>> = (0..200).map(|_| inside(&mut rng, &chain)).collect();
+    let [intervals, aligned] = swivels(&chain, &vectors);
+    assert!(intervals > 400 && aligned == 0, "{intervals} {aligned}");
+    // Axes that line up: each of the second, fourth and sixth joint, and several at once.
+    let singular: Vec<Vec<f64>> = (0..70)
+        .map(|i| {
+            let mut vector = inside(&mut rng, &chain);
+            let lined_up: &[usize] = [&[1][..], &[3], &[5], &[1, 5], &[1, 3], &[3, 5], &[1, 3, 5]][i % 7];
+            lined_up.iter().for_each(|v| vector[*v] = 0.0);
+            vector
+        })
+        .collect();
+    let [intervals, aligned] = swivels(&chain, &singular);
+    assert!(intervals > 70 && aligned >= 60, "{intervals} {aligned}");
+    for (file, base, tip) in SPHERICAL {
+        let Some(chain) = real(file, base, tip) else { return };
+        let vectors: Vec<Vec<f64>> = (0..20).map(|_| inside(&mut rng, &chain)).collect();
+        assert!(swivels(&chain, &vectors)[0] >= 20, "{file}");
+    }
 }

@@ -6,6 +6,8 @@
 //! comes to a limit, and where two branches fold into each other. There the solver itself finds the place. So nothing wider than that
 //! can have been missed. (The free joint of section 4.1 of Diankov's thesis, stepped there.)
 //!
+//! With a spherical shoulder and a spherical wrist the set is known in closed form ([`Solver::swivel`]), and complete.
+//!
 //! The general solver of six joints is not made of equations with one unknown: with it only points can be tried, and the result says so.
 
 // `!(x < y)` is meant: a NaN must count as too large.
@@ -13,6 +15,10 @@
 
 mod bounds;
 mod interval;
+mod pick;
+mod sinusoid;
+mod spherical;
+mod swivel;
 mod trigonometric;
 
 use std::f64::consts::PI;
@@ -21,6 +27,9 @@ use robotc_core::Pose;
 use robotc_core::ik::{IkSolutions, PreferenceError, Preferences, VariableRange};
 use robotc_core::model::ChainMotion;
 use robotc_core::rng::Rng;
+
+pub use self::spherical::Side;
+pub use self::swivel::SwivelBranch;
 
 use self::interval::Interval;
 use super::{Solver, frame};
@@ -47,11 +56,23 @@ impl Default for RedundancyOptions {
 /// What is known of intervals of the free value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Completeness {
+    /// Exactly these values, but for rounding.
+    Complete,
     /// Every value outside of them has no solution, but for cells narrower than this that hold an end of an interval or a singular
     /// pose.
     ToWidth(f64),
     /// Found by trying points this far apart: a narrower interval, or a narrower gap, may have been missed.
     Sampled(f64),
+}
+
+impl std::fmt::Display for Completeness {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Complete => f.write_str("complete"),
+            Self::ToWidth(width) => write!(f, "complete to width {width:.0e}"),
+            Self::Sampled(step) => write!(f, "sampled in steps of {step:.1e}"),
+        }
+    }
 }
 
 /// Values of a free variable for which a pose has solutions.
@@ -159,6 +180,12 @@ impl Solver {
             lower: -1.0,
             upper: 1.0,
         });
+        if let [own] = program.free[..]
+            && let Some(branches) = self.swivel_within(base_from_tip, &ranges)
+        {
+            let all = branches.iter().flat_map(|branch| branch.joint_intervals(own)).collect();
+            return Ok(FreeIntervals { intervals: united(all), completeness: Completeness::Complete, range });
+        }
         let (low, high) = match range.motion {
             _ if range.is_continuous() => (-PI, PI),
             ChainMotion::Revolute => (range.lower.max(-2.0 * PI), range.upper.min(2.0 * PI)),
@@ -186,6 +213,21 @@ impl Solver {
         };
         Ok(FreeIntervals { intervals: search.intervals(&cells), completeness, range })
     }
+}
+
+/// Intervals that are apart from each other, ascending.
+fn united(mut intervals: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    // Ends that only rounding keeps apart.
+    const TOUCHING: f64 = 1e-12;
+    intervals.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut found: Vec<[f64; 2]> = Vec::new();
+    for [low, high] in intervals {
+        match found.last_mut() {
+            Some(last) if last[1] + TOUCHING >= low => last[1] = last[1].max(high),
+            _ => found.push([low, high]),
+        }
+    }
+    found
 }
 
 struct Search<'a> {
