@@ -15,6 +15,7 @@ mod picks;
 mod placings;
 mod plan;
 mod problem;
+mod ranking;
 mod rejections;
 mod sequence;
 mod stretch;

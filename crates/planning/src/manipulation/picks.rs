@@ -8,13 +8,13 @@ use robotc_core::{Configuration, LinkPoses, Pose};
 use super::placings::{Destinations, Placing, PlacingSampler, Placings, free_values};
 use super::plan::Tried;
 use super::problem::GoalContext;
+use super::ranking::ranking;
 use super::rejections::{Cause, Filter, Rejections};
 use super::stretch::{back_off, cause, fine_checker, fingers_move, raise, state_is_free};
 use crate::budget::{Budget, Interrupt};
 use crate::constraint::Upright;
 use crate::goal::{GoalDraw, GoalSampler};
 use crate::grasp::{Grasp, GraspSet};
-use crate::reachability::ranking;
 use crate::scene::{Movers, Rules, Scene};
 
 /// A grasp with all its straight motions.
@@ -74,7 +74,7 @@ impl<'a, 's> PickSampler<'a, 's> {
             q: q.clone(),
             tilt,
             rng,
-            alive: ranking(set, cx.problem.reachability, cx.problem.arm, scene.world_from_body(cx.body())),
+            alive: ranking(&cx.problem, cx.gripper(), scene, cx.body(), set),
             looked_at: 0,
             usable: 0,
             cursor: 0,

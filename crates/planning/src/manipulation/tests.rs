@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use robotc_core::geom::{ConvexParts, box_part};
+use robotc_core::ids::Idx;
 use robotc_core::model::Shape;
 use robotc_core::robot::Robot;
 use robotc_core::task::{Destination, Goal, Object, Task};
@@ -182,6 +183,33 @@ fn a_box_goes_over_a_wall() {
             assert!(plan.duration() > 1.0 && plan.duration() < 30.0, "{}", plan.duration());
         }
     }
+}
+
+/// Reaches with the palm on this side of the object.
+struct Behind;
+
+impl crate::reachability::Reachability for Behind {
+    fn density(&self, base_from_tip: &Pose) -> f64 {
+        f64::from(base_from_tip.translation.x < 0.55)
+    }
+}
+
+#[test]
+fn grasps_with_room_and_within_reach_are_tried_first() {
+    // By score, the set has four low ones from the side (from behind, the right, the front, the left), four higher ones, and
+    // four from above.
+    let order = |obstacles: &[([f64; 3], [f64; 3])], map: Option<&dyn crate::reachability::Reachability>| {
+        let bench = bench(false, &[([0.6, 0.0], place(0, [0.6, 0.2], true, None))], obstacles);
+        let sets = [&bench.grasps];
+        let problem = Manipulation { reachability: map, ..problem(&bench, &sets) };
+        let gripper = &bench.task.robot.grippers[0];
+        ranking::ranking(&problem, gripper, &bench.scene, robotc_core::BodyIdx::new(0), &bench.grasps)
+    };
+    let heights = [8, 9, 10, 11, 4, 5, 6, 7, 0, 1, 2, 3];
+    assert_eq!(order(&[], None), heights, "the palm has most room above the table");
+    let wall = ([0.5, 0.05, 0.25], [0.6, -0.15, TABLE + 0.125]);
+    assert_eq!(order(&[wall], None)[10..], [1, 5], "last those for which the palm would be in the wall");
+    assert_eq!(order(&[], Some(&Behind))[..2], [4, 0], "of all, those within reach");
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod article;
 mod checker;
 mod mobile;
 mod pairs;
+mod room;
 mod rows;
 mod shape;
 
