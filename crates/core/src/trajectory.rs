@@ -111,22 +111,40 @@ impl Trajectory {
             let positions = knot.positions.clone();
             return TrajectoryPoint { positions, velocities: rest.clone(), accelerations: rest };
         }
-        let right = self.times.partition_point(|&t| t <= time).clamp(1, last);
-        let (a, b) = (&self.knots[right - 1], &self.knots[right]);
-        let h = self.times[right] - self.times[right - 1];
-        let t = time - self.times[right - 1];
+        let knot = self.knot_before(time).min(last - 1);
+        let (a, b) = (&self.knots[knot], &self.knots[knot + 1]);
+        let t = time - self.times[knot];
         let mut point = TrajectoryPoint::default();
         for i in 0..self.dofs.len() {
-            // p(t) = p0 + v0 t + c2 t^2 + c3 t^3 with the knots' positions and velocities.
-            let slope = (b.positions[i] - a.positions[i]) / h;
-            let (v0, v1) = (a.velocities[i], b.velocities[i]);
-            let c2 = (3.0 * slope - 2.0 * v0 - v1) / h;
-            let c3 = (v0 + v1 - 2.0 * slope) / (h * h);
-            point.positions.push(a.positions[i] + t * (v0 + t * (c2 + t * c3)));
+            let [p0, v0, c2, c3] = cubic(a, b, i, self.times[knot + 1] - self.times[knot]);
+            point.positions.push(p0 + t * (v0 + t * (c2 + t * c3)));
             point.velocities.push(v0 + t * (2.0 * c2 + 3.0 * t * c3));
             point.accelerations.push(2.0 * c2 + 6.0 * t * c3);
         }
         point
+    }
+
+    /// Positions of [`sample`](Self::sample) alone, into memory that is there already.
+    pub fn positions_at(&self, time: f64, positions: &mut Vec<f64>) {
+        positions.clear();
+        let last = self.knots.len() - 1;
+        if time < 0.0 || time > self.duration() || last == 0 {
+            let knot = &self.knots[if time < 0.0 { 0 } else { last }];
+            positions.extend_from_slice(&knot.positions);
+            return;
+        }
+        let knot = self.knot_before(time).min(last - 1);
+        let (a, b) = (&self.knots[knot], &self.knots[knot + 1]);
+        let (t, h) = (time - self.times[knot], self.times[knot + 1] - self.times[knot]);
+        positions.extend((0..self.dofs.len()).map(|i| {
+            let [p0, v0, c2, c3] = cubic(a, b, i, h);
+            p0 + t * (v0 + t * (c2 + t * c3))
+        }));
+    }
+
+    /// The last knot that is not after `time`; the first one before the start.
+    pub fn knot_before(&self, time: f64) -> usize {
+        self.times.partition_point(|&t| t <= time).saturating_sub(1)
     }
 
     /// Times from zero in steps of `period` seconds (must be positive), and the end.
@@ -138,6 +156,15 @@ impl Trajectory {
         times.push(duration);
         times
     }
+}
+
+/// Between two knots that are `duration` seconds apart, one degree of freedom is at p0 + v0 t + c2 t^2 + c3 t^3: these four.
+pub fn cubic(from: &TrajectoryPoint, to: &TrajectoryPoint, dof: usize, duration: f64) -> [f64; 4] {
+    let slope = (to.positions[dof] - from.positions[dof]) / duration;
+    let (v0, v1) = (from.velocities[dof], to.velocities[dof]);
+    let c2 = (3.0 * slope - 2.0 * v0 - v1) / duration;
+    let c3 = (v0 + v1 - 2.0 * slope) / (duration * duration);
+    [from.positions[dof], v0, c2, c3]
 }
 
 #[cfg(test)]

@@ -11,9 +11,9 @@ use super::problem::{Manipulation, allowed_sink, gripper_links, motion_limits};
 use crate::caging::Cage;
 use crate::edge::{EdgeChecker, Obstruction};
 use crate::mechanism::Mechanism;
-use crate::scene::{ArticleChecker, Followed, Grip, RobotChecker, Rules, Scene};
+use crate::scene::{Along, ArticleChecker, Grip, RobotChecker, Rules, Scene};
 use crate::space::{Axis, Space};
-use crate::timing::TimedPath;
+use crate::timing::limit_use;
 
 /// What is wrong with a plan.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -68,8 +68,7 @@ pub fn certify(
             return Err(wrong(0.0, "what is held does not follow from the events".into()));
         }
         let limits = motion_limits(&robot.model, trajectory.dofs());
-        let timed = TimedPath { times: trajectory.times().to_vec(), knots: trajectory.knots().to_vec() };
-        if timed.limit_use(&limits) > LIMIT_USE {
+        if limit_use(trajectory.times(), trajectory.knots(), &limits) > LIMIT_USE {
             return Err(wrong(0.0, "a speed limit is exceeded".into()));
         }
         let rules = rules(problem, options, segment, &links);
@@ -163,7 +162,7 @@ fn rules(
     Rules { margin: 0.0, held, gripper: links.to_vec(), target: near.then_some(target), give, sink }
 }
 
-/// Looks at the motion in steps of the resolution, at every one.
+/// Looks at the motion: what is carried upright in steps of the resolution, collisions as often as the room that is left asks for.
 fn replay(
     problem: &Manipulation<'_>,
     scene: &Scene,
@@ -179,11 +178,10 @@ fn replay(
         Goal::Open { .. } => None,
     };
     let mut checker = RobotChecker::new(scene, &space, trajectory.dofs(), q, rules, resolution);
-    let mut followed = Followed::default();
-    let sample = |time: f64| trajectory.sample(time).positions;
-    for (time, at) in dense_states(&checker, trajectory.times(), &sample, resolution) {
-        if let (Some(tilt), Some(held), SegmentKind::Carry) = (keep_upright, &segment.held, segment.kind) {
-            let mut full = q.clone();
+    if let (Some(tilt), Some(held), SegmentKind::Carry) = (keep_upright, &segment.held, segment.kind) {
+        let sample = |time: f64| trajectory.sample(time).positions;
+        let mut full = q.clone();
+        for (time, at) in dense_states(&checker, trajectory.times(), &sample, resolution) {
             full.set(trajectory.dofs(), &at);
             let root_from_link = problem.kinematics.root_from_link(&full, held.link);
             let axis = (scene.world_from_robot() * root_from_link * held.link_from_object).rotation
@@ -192,8 +190,8 @@ fn replay(
                 return Err((time, "the held object tilts too far".into()));
             }
         }
-        checker.follow(&at, &mut followed).map_err(|by| (time, checker.describe(by)))?;
     }
+    checker.all_along(&Along::new(trajectory)).map_err(|(time, by)| (time, checker.describe(by)))?;
     Ok(checker.states())
 }
 
@@ -249,8 +247,8 @@ fn replay_article(
     if values.times() != trajectory.times() || values.dofs() != [article.dof] {
         return wrong("the motions of robot and article do not belong together");
     }
-    let timed = TimedPath { times: values.times().to_vec(), knots: values.knots().to_vec() };
-    if timed.limit_use(&motion_limits(&article.model, values.dofs())) > LIMIT_USE {
+    let limits = motion_limits(&article.model, values.dofs());
+    if limit_use(values.times(), values.knots(), &limits) > LIMIT_USE {
         return wrong("a speed limit of the article is exceeded");
     }
     let Some(mechanism) = Mechanism::of_article(article) else {

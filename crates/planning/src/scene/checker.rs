@@ -11,36 +11,22 @@ use crate::travel::TravelBounds;
 
 /// Checks motions of some degrees of freedom of a robot; the others stay as they are.
 pub struct RobotChecker<'a> {
-    scene: &'a Scene,
-    space: &'a Space,
+    pub(super) scene: &'a Scene,
+    pub(super) space: &'a Space,
     dofs: &'a [DofIdx],
-    pairs: Pairs,
+    pub(super) pairs: Pairs,
     bounds: TravelBounds,
-    resolution: f64,
-    rules: Rules,
+    pub(super) resolution: f64,
+    pub(super) rules: Rules,
     constraint: Option<&'a dyn Constraint>,
     /// Clearance beyond this is not looked for.
     room: f64,
     /// For each row of the pairs, its pace; found when a clearance is asked for.
     paces: Option<Vec<f64>>,
     q: Configuration,
-    poses: LinkPoses,
+    pub(super) poses: LinkPoses,
     states: u64,
     work: Work,
-}
-
-/// What is known along a motion that is [followed](RobotChecker::follow).
-#[derive(Debug, Default)]
-pub(crate) struct Followed {
-    /// The state that was asked about last.
-    at: Vec<f64>,
-    /// For each row of the pairs, how far it has brought things together so far at most.
-    travelled: Vec<f64>,
-    travels: Vec<f64>,
-    /// For each pair, up to where in that it is known to stay apart.
-    lasts: Vec<f64>,
-    /// For each row, the first of these.
-    soonest: Vec<f64>,
 }
 
 /// Memory of edge checks.
@@ -146,54 +132,10 @@ impl<'a> RobotChecker<'a> {
         self.place(&work.at);
     }
 
-    fn place(&mut self, q: &[f64]) {
+    pub(super) fn place(&mut self, q: &[f64]) {
         self.states += 1;
         self.q.set(self.dofs, q);
         self.scene.kinematics.link_poses(&self.q, &mut self.poses);
-    }
-
-    /// Looks at the next state of a motion that is asked about state by state; of the pairs, only at those whose room where they
-    /// were looked at last may be used up by now.
-    pub(crate) fn follow(&mut self, next: &[f64], followed: &mut Followed) -> Result<(), Obstruction> {
-        if !self.space.contains(next) {
-            return Err(Obstruction::Bounds);
-        }
-        let Followed { at, travelled, travels, lasts, soonest } = followed;
-        if lasts.len() == self.pairs.len() && at.len() == next.len() {
-            at.iter_mut().zip(next).for_each(|(at, next)| *at = next - *at);
-            self.pairs.travels(at, travels);
-            travelled.iter_mut().zip(&*travels).for_each(|(sum, travel)| *sum += travel);
-        } else {
-            self.pairs.travels(next, travels);
-            travelled.clear();
-            travelled.resize(travels.len(), 0.0);
-            lasts.clear();
-            lasts.resize(self.pairs.len(), 0.0);
-            soonest.clear();
-            soonest.resize(travels.len(), 0.0);
-        }
-        at.clear();
-        at.extend_from_slice(next);
-        if soonest.iter().zip(&*travelled).all(|(soonest, travelled)| travelled < soonest) {
-            return Ok(());
-        }
-        self.place(next);
-        // Pairs are by row.
-        let mut pair = 0;
-        for (row, soonest) in soonest.iter_mut().enumerate() {
-            let due = travelled[row] >= *soonest;
-            let mut first = f64::INFINITY;
-            while pair < lasts.len() && self.pairs.row(pair) == row {
-                if due && travelled[row] >= lasts[pair] {
-                    let room = self.pairs.room(self.scene, &self.rules, &self.poses, pair, self.room)?;
-                    lasts[pair] = travelled[row] + room;
-                }
-                first = first.min(lasts[pair]);
-                pair += 1;
-            }
-            *soonest = first;
-        }
-        Ok(())
     }
 
     /// Whether the states of an edge satisfy the constraint: its end, and as many in between as its size asks for.

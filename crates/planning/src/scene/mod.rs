@@ -5,6 +5,7 @@
 //! state, with which [edge checks](crate::edge) skip what cannot collide. It is counted in the travel of the fastest
 //! point: a link that moves at a third of that pace has three times the room.
 
+mod along;
 mod article;
 mod checker;
 mod mobile;
@@ -22,8 +23,8 @@ use robotc_core::model::Geometry;
 use robotc_core::world::World;
 use robotc_core::{BodyIdx, Configuration, Kinematics, LinkIdx, LinkPoses, Pose, TypedVec};
 
+pub(crate) use along::Along;
 pub use article::ArticleChecker;
-pub(crate) use checker::Followed;
 pub use checker::RobotChecker;
 pub use mobile::MobileChecker;
 use shape::Shape;

@@ -11,6 +11,7 @@ mod timed;
 
 pub use point_to_point::point_to_point;
 pub use timed::TimedPath;
+pub(crate) use timed::limit_use;
 
 use serde::{Deserialize, Serialize};
 

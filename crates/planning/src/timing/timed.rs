@@ -1,7 +1,7 @@
 //! A path with times.
 
 use robotc_core::ids::DofIdx;
-use robotc_core::trajectory::{Trajectory, TrajectoryError, TrajectoryPoint};
+use robotc_core::trajectory::{Trajectory, TrajectoryError, TrajectoryPoint, cubic};
 
 use super::MotionLimits;
 
@@ -57,25 +57,7 @@ impl TimedPath {
     /// The largest fraction of any limit that the motion uses anywhere, between the knots too; speeds count as they
     /// are, accelerations by their square root, so that stretching time by this factor satisfies all limits.
     pub fn limit_use(&self, limits: &MotionLimits) -> f64 {
-        let mut most = 0.0_f64;
-        for (times, knots) in self.times.windows(2).zip(self.knots.windows(2)) {
-            let h = times[1] - times[0];
-            let (a, b) = (&knots[0], &knots[1]);
-            for i in 0..limits.velocity.len() {
-                // p(t) = p0 + v0 t + c2 t^2 + c3 t^3: acceleration is linear, velocity has one extremum.
-                let slope = (b.positions[i] - a.positions[i]) / h;
-                let (v0, v1) = (a.velocities[i], b.velocities[i]);
-                let c2 = (3.0 * slope - 2.0 * v0 - v1) / h;
-                let c3 = (v0 + v1 - 2.0 * slope) / (h * h);
-                let acceleration = (2.0 * c2).abs().max((2.0 * c2 + 6.0 * c3 * h).abs());
-                let turn = if c3 == 0.0 { 0.0 } else { (-c2 / (3.0 * c3)).clamp(0.0, h) };
-                let between = v0 + turn * (2.0 * c2 + 3.0 * turn * c3);
-                let velocity = v0.abs().max(v1.abs()).max(between.abs());
-                most = most.max(velocity / limits.velocity[i]);
-                most = most.max((acceleration / limits.acceleration[i]).sqrt());
-            }
-        }
-        most
+        limit_use(&self.times, &self.knots, limits)
     }
 
     /// Stretches time where rounding or interpolation left the motion a trace too fast.
@@ -109,4 +91,23 @@ impl TimedPath {
     ) -> Result<Trajectory, TrajectoryError> {
         Trajectory::new(dofs, names, self.times, self.knots)
     }
+}
+
+/// See [`TimedPath::limit_use`].
+pub(crate) fn limit_use(times: &[f64], knots: &[TrajectoryPoint], limits: &MotionLimits) -> f64 {
+    let mut most = 0.0_f64;
+    for (times, knots) in times.windows(2).zip(knots.windows(2)) {
+        let h = times[1] - times[0];
+        for i in 0..limits.velocity.len() {
+            // Acceleration is linear, velocity has one extremum.
+            let [_, v0, c2, c3] = cubic(&knots[0], &knots[1], i, h);
+            let acceleration = (2.0 * c2).abs().max((2.0 * c2 + 6.0 * c3 * h).abs());
+            let turn = if c3 == 0.0 { 0.0 } else { (-c2 / (3.0 * c3)).clamp(0.0, h) };
+            let between = v0 + turn * (2.0 * c2 + 3.0 * turn * c3);
+            let velocity = v0.abs().max(knots[1].velocities[i].abs()).max(between.abs());
+            most = most.max(velocity / limits.velocity[i]);
+            most = most.max((acceleration / limits.acceleration[i]).sqrt());
+        }
+    }
+    most
 }
