@@ -23,6 +23,7 @@ impl DescriptionArgs {
             packages: self.packages.iter().cloned().collect(),
             arguments: self.arguments.iter().cloned().collect(),
             meshes,
+            ..LoadOptions::default()
         }
     }
 }

@@ -43,6 +43,7 @@ pub(crate) fn generate_ik(
         packages: packages.unwrap_or_default(),
         arguments: arguments.unwrap_or_default(),
         meshes: MeshPolicy::Ignore,
+        ..LoadOptions::default()
     };
     let (model, found) = urdf::load(&OsSystem, &mut sources, &urdf, &load);
     let model = accept(py, model, &found, &sources)?;

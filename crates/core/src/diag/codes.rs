@@ -374,7 +374,9 @@ pub const CODES: &[CodeInfo] = &[
         "collision mesh missing",
         "A mesh that says where a link is solid was not found. Without it, motion of the joints named in the \
          message could not be checked for collisions, so the robot is refused. `package://name/...` is looked \
-         up in the packages of the robot specification, then in the folders above the description.",
+         up in the packages of the robot specification, then in the folders above the description. Where the \
+         mesh is not to be had and the link may touch nothing, a bracket say, name the link in the list `shapeless` \
+         of the robot specification.",
     ),
     entry(
         "R0303",

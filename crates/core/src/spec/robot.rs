@@ -87,11 +87,13 @@ fn read(
     let arguments = table.entries("arguments").iter();
     let arguments =
         arguments.filter_map(|entry| Some((entry.key.clone(), entry.node.text()?.to_owned()))).collect();
-    let options = LoadOptions { packages, arguments, ..LoadOptions::default() };
+    let shapeless = table.list("shapeless").iter().filter_map(|name| Some(name.text()?.to_owned())).collect();
+    let options = LoadOptions { packages, arguments, shapeless, ..LoadOptions::default() };
     let description = description?;
     let (model, found) = urdf::load(system, sources, &description, &options);
     diagnostics.extend(found);
     let model = model?;
+    lookup::links(&model, table.list("shapeless"), diagnostics);
     let model = joint_limits(system, sources, file, &model, diagnostics).unwrap_or(model);
     let srdf = semantics(system, sources, file, &model, diagnostics);
     let robot = annotate(table, file.place, &model, srdf.as_ref(), diagnostics);

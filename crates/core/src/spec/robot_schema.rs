@@ -30,6 +30,11 @@ pub(super) static ROBOT: TableSchema = TableSchema {
              beside and above the description.",
         ),
         Key::optional(
+            "shapeless",
+            Kind::List(&Kind::Text(Text::Link), Length::AtLeast(1)),
+            "Links whose missing collision meshes are accepted: what those meshes would show touches nothing.",
+        ),
+        Key::optional(
             "arguments",
             Kind::Map(Text::Argument, &Kind::Text(Text::Any)),
             "Values of the arguments (`$(arg NAME)`) of a xacro description; they override its defaults.",

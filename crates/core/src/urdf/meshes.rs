@@ -88,6 +88,9 @@ impl<'a> MeshSource<'a> {
         let Some(Resolved { path, guessed }) =
             resolve(self.system, &self.options.packages, self.path, &uri.text)
         else {
+            if self.is_accepted(link, purpose) {
+                return None;
+            }
             if self.is_skipped(&uri.text) {
                 self.left_out[purpose as usize].add(uri.span, &uri.text);
             } else {
@@ -101,6 +104,7 @@ impl<'a> MeshSource<'a> {
         }
         match self.load(&path, uri.span, found) {
             Ok(mesh) => Some(Shape::Mesh { mesh: self.scaled(path, mesh, scale), uri: uri.text.clone() }),
+            Err(_) if self.is_accepted(link, purpose) => None,
             Err(reason) => {
                 let message = format!("mesh `{}` of link `{link}` cannot be used: {reason}", uri.text);
                 found.push(match self.is_fatal(purpose) {
@@ -117,6 +121,11 @@ impl<'a> MeshSource<'a> {
     /// Whether a damaged or missing mesh of this use keeps the robot from being used.
     fn is_fatal(&self, purpose: Use) -> bool {
         purpose == Use::Collision && self.options.meshes != MeshPolicy::SkipMissing
+    }
+
+    /// Whether the caller knows that the link is without this shape.
+    fn is_accepted(&self, link: &str, purpose: Use) -> bool {
+        purpose == Use::Collision && self.options.shapeless.contains(link)
     }
 
     /// Whether the policy leaves the missing mesh `uri` out.
@@ -177,6 +186,9 @@ impl<'a> MeshSource<'a> {
             false => format!("moved by the joints {}", joints.join(", ")),
         };
         let message = format!("collision mesh `{uri}` of link `{link}` is missing; the link is {affected}");
+        let hint = format!(
+            "{hint}; a link that may touch nothing is named under `shapeless` in the robot specification"
+        );
         Diagnostic::error("R0302", message).at(span, "no such file").hint(hint)
     }
 

@@ -17,7 +17,7 @@ mod structure;
 
 pub(crate) use resolve::{normal, package_folder};
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use crate::diag::{Diagnostics, Sources};
@@ -49,6 +49,8 @@ pub struct LoadOptions {
     pub packages: BTreeMap<String, PathBuf>,
     /// What to do about meshes.
     pub meshes: MeshPolicy,
+    /// Links whose missing or damaged collision meshes are left out, whatever the policy.
+    pub shapeless: BTreeSet<String>,
     /// Values of xacro arguments; they override the defaults of the file.
     pub arguments: BTreeMap<String, String>,
 }

@@ -45,6 +45,16 @@ fn each_kind_of_file_is_recognised() {
 }
 
 #[test]
+fn a_link_may_be_said_to_have_no_shape() {
+    // `mesh_missing.robot.toml`, which does not say so, is among the findings.
+    let (_, _, facts) = summary("files/bracket.robot.toml").unwrap();
+    assert!(
+        facts.starts_with("3 links, 2 joints, 1 degree of freedom, 2 of the links with collision shapes"),
+        "{facts}"
+    );
+}
+
+#[test]
 fn other_files_are_refused() {
     assert!(summary("files/wedge.obj").unwrap_err().contains("error[R0115]"));
     assert!(summary("files/nothing").unwrap_err().contains("error[R0001]"));

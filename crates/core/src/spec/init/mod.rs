@@ -43,14 +43,15 @@ pub struct InitOptions {
 /// has no moving joint.
 ///
 /// Arms are the chains of the SRDF, else the longest serial chains; grippers are bodies at the end of an arm with short moving
-/// branches. Loading the text gives no errors and no warnings of its own.
+/// branches. Loading the text gives no errors and no warnings of its own, but for collision meshes that are missing: whether a link may do
+/// without is not guessed.
 pub fn init(
     system: &dyn System,
     sources: &mut Sources,
     options: &InitOptions,
 ) -> (Option<String>, Diagnostics) {
     let (packages, arguments) = (options.packages.clone(), options.arguments.clone());
-    let load = LoadOptions { packages, arguments, meshes: MeshPolicy::SkipAway };
+    let load = LoadOptions { packages, arguments, meshes: MeshPolicy::SkipAway, ..LoadOptions::default() };
     let (model, mut diagnostics) = urdf::load(system, sources, &options.description, &load);
     let Some(mut model) = model else { return (None, diagnostics) };
     if let Some(path) = &options.joint_limits {
