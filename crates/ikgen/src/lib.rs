@@ -47,6 +47,8 @@
 //! | `quadratic(a, b, c) -> t { }` | for each length with `a t^2 + b t + c = 0` |
 //! | `zero(e, tolerance) { } else { }` | a *guard*: the first block where `e` is smaller in magnitude |
 //! | `first { } else { }` | the second block only if nothing emitted by the first was accepted |
+//! | `doubt(e, tolerance)` | a note that an equation is near to losing roots, where `e` is smaller in magnitude |
+//! | `rest { }` | the block only if nothing was accepted before, or there was a doubt; not inside of another statement |
 //! | `emit angle(c, s) length(x) ...` | a candidate |
 //! | `# words` | a remark: which equation gave the following lines |
 //!

@@ -415,6 +415,7 @@ typedef struct {
     ik_solutions *out;
     int accepted;
     int misses;
+    int doubt;
     int described;
 } ik_sink;
 
@@ -686,6 +687,7 @@ static int ik_solve_with(const ik_chain *chain, int described, const ik_frame *p
     for (i = 0; i < 3; i++) {
         if (sink.accepted > 0 || (i > 0 && slacks[i] <= slacks[0])) continue;
         sink.misses = 0;
+        sink.doubt = 0;
         ik_attempt(pose, given, slacks[i], &sink);
     }
     return out->count;

@@ -164,6 +164,8 @@ struct Sink<'a> {
     out: &'a mut Solutions,
     accepted: usize,
     misses: usize,
+    /// An equation was near to losing roots.
+    doubt: bool,
     /// The chain is the described one, for which candidates come with their misses.
     described: bool,
 }
@@ -211,11 +213,12 @@ pub fn solve_on(chain: &Chain, base_from_tip: &Frame, free: &[f64; FREE.len()], 
 
 fn solve_with(chain: &Chain, described: bool, base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {
     out.len = 0;
-    let mut sink = Sink { arm: arm(chain), base_from_tip, out, accepted: 0, misses: 0, described };
+    let mut sink = Sink { arm: arm(chain), base_from_tip, out, accepted: 0, misses: 0, doubt: false, described };
     attempt(base_from_tip, free, SLACK, &mut sink);
     for slack in WIDER {
         if sink.accepted == 0 && slack > SLACK {
             sink.misses = 0;
+            sink.doubt = false;
             attempt(base_from_tip, free, slack, &mut sink);
         }
     }
@@ -240,13 +243,8 @@ fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &m
     let t9 = px - r02 * 0.07999999999999996;
     let t10 = py - r12 * 0.07999999999999996;
     let t11 = pz - r22 * 0.07999999999999996;
-    let roots1 = circle(-t0, -t1, 0.0, slack);
-    let before1 = sink.accepted;
-    for i in 0..roots1.count() {
-        if roots1.free && sink.accepted > before1 {
-            break;
-        }
-        let [c1, s1] = roots1.get(i);
+    let mut roots1 = circle(-t0, -t1, 0.0, slack).tries(sink.accepted);
+    while let Some([c1, s1]) = roots1.next(sink.accepted) {
         let t14 = -0.025 + t1 * c1 - t0 * s1;
         let t15 = r12 * s1;
         let t16 = r02 * c1;
@@ -262,13 +260,8 @@ fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &m
         let t1_2 = angle_of(s1, c1);
         let t27 = 0.025 * c1;
         let t28 = 0.025 * s1;
-        let roots2 = circle(-0.45499999999999996 * t14, t5, t6 + c1 * t7 - s1 * t8, slack);
-        let before2 = sink.accepted;
-        for i in 0..roots2.count() {
-            if roots2.free && sink.accepted > before2 {
-                break;
-            }
-            let [c2, s2] = roots2.get(i);
+        let mut roots2 = circle(-0.45499999999999996 * t14, t5, t6 + c1 * t7 - s1 * t8, slack).tries(sink.accepted);
+        while let Some([c2, s2]) = roots2.next(sink.accepted) {
             let t31 = -0.45499999999999996 + (t14 * c2 + t3 * s2);
             let t32 = t4 * c2 + t14 * s2;
             let t33 = r22 * s2 + c2 * t17;
@@ -286,13 +279,8 @@ fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &m
             let t45 = 0.45499999999999996 * t7_2 + t27;
             let t46 = 0.45499999999999996 * t21_2 + t28;
             let t47 = 0.4 - s2 * 0.45499999999999996;
-            let roots3 = align(0.42000000000000004 * t31 + 0.034999999999999976 * t32, t31 * 0.034999999999999976 - 0.42000000000000004 * t32, slack);
-            let before3 = sink.accepted;
-            for i in 0..roots3.count() {
-                if roots3.free && sink.accepted > before3 {
-                    break;
-                }
-                let [c3, s3] = roots3.get(i);
+            let mut roots3 = align(0.42000000000000004 * t31 + 0.034999999999999976 * t32, t31 * 0.034999999999999976 - 0.42000000000000004 * t32, slack).tries(sink.accepted);
+            while let Some([c3, s3]) = roots3.next(sink.accepted) {
                 // what is left of the rotation for the wrist
                 // the angle between the first and the last axis of the wrist
                 let t50 = s3 * t33 - c3 * t34;
@@ -311,13 +299,8 @@ fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &m
                 let t63 = 0.42000000000000004 * t22_2 + -0.034999999999999976 * t26_2 - t46 - t10;
                 let t64 = -0.034999999999999976 * (t60 - t59) - 0.42000000000000004 * t58 + t47 - t11;
                 let t65 = t62 * t62 + t63 * t63 + t64 * t64;
-                let roots4 = half(-(t33 * c3 + s3 * t34), sqrt(t50 * t50 + t20), slack);
-                let before4 = sink.accepted;
-                for i in 0..roots4.count() {
-                    if roots4.free && sink.accepted > before4 {
-                        break;
-                    }
-                    let [c5, s5] = roots4.get(i);
+                let mut roots4 = half(-(t33 * c3 + s3 * t34), sqrt(t50 * t50 + t20), slack).tries(sink.accepted);
+                while let Some([c5, s5]) = roots4.next(sink.accepted) {
                     let t68 = s5 * t52;
                     let t5_2 = angle_of(s5, c5);
                     let t70 = r02 * c5;
@@ -326,13 +309,8 @@ fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &m
                     let t73 = r12 * s5;
                     let t74 = r22 * c5;
                     let t75 = r22 * s5;
-                    let roots5 = align(t50 * s5, -(t19 * s5), slack);
-                    let before5 = sink.accepted;
-                    for i in 0..roots5.count() {
-                        if roots5.free && sink.accepted > before5 {
-                            break;
-                        }
-                        let [c4, s4] = roots5.get(i);
+                    let mut roots5 = align(t50 * s5, -(t19 * s5), slack).tries(sink.accepted);
+                    while let Some([c4, s4]) = roots5.next(sink.accepted) {
                         let t4_2 = angle_of(s4, c4);
                         let t79 = s1 * s4 + t12_2 * c4;
                         let t15_2 = s1 * c4;
@@ -344,13 +322,8 @@ fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &m
                         let t31_2 = c1 * c4 + t26_2 * s4;
                         let t87 = c4 * t41_2;
                         let t88 = s4 * t41_2;
-                        let roots6 = align(c4 * t21 - s4 * t51, t68 - c5 * (c4 * t51 + s4 * t21), slack);
-                        let before6 = sink.accepted;
-                        for i in 0..roots6.count() {
-                            if roots6.free && sink.accepted > before6 {
-                                break;
-                            }
-                            let [c6, s6] = roots6.get(i);
+                        let mut roots6 = align(c4 * t21 - s4 * t51, t68 - c5 * (c4 * t51 + s4 * t21), slack).tries(sink.accepted);
+                        while let Some([c6, s6]) = roots6.next(sink.accepted) {
                             // the candidate: its angles, and how far it is from the pose
                             let t6_2 = angle_of(s6, c6);
                             let t92 = c6 * r00 + r01 * s6;
@@ -593,12 +566,36 @@ impl<const N: usize> Roots<N> {
         if i < self.len { self.items[i] } else { representative(i - self.len) }
     }
 
+    /// The same to be tried one after the other, where so many solutions are known.
+    pub fn tries(self, accepted: usize) -> Tries<N> {
+        Tries { roots: self, accepted, tried: 0 }
+    }
+
     /// Adds one, if there is room.
     pub fn push(&mut self, root: [f64; 2]) {
         if self.len < N {
             self.items[self.len] = root;
             self.len += 1;
         }
+    }
+}
+
+/// Roots that are tried one after the other.
+#[derive(Clone, Copy, Debug)]
+pub struct Tries<const N: usize> {
+    roots: Roots<N>,
+    accepted: usize,
+    tried: usize,
+}
+
+impl<const N: usize> Tries<N> {
+    /// The next root: none after the last, nor where the unknown is free and more solutions are known by now than before the first.
+    pub fn next(&mut self, accepted: usize) -> Option<[f64; 2]> {
+        if self.tried == self.roots.count() || self.roots.free && accepted > self.accepted {
+            return None;
+        }
+        self.tried += 1;
+        Some(self.roots.get(self.tried - 1))
     }
 }
 

@@ -212,7 +212,7 @@ fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> Strin
          static const double slacks[3] = {{ {:?}, 1e-5, 2e-3 }};\n    ik_sink sink;\n    int i;\n    \
          sink.chain = chain;\n    sink.pose = pose;\n    sink.out = out;\n    sink.accepted = 0;\n    sink.described = described;\n    out->count = 0;\n    \
          for (i = 0; i < 3; i++) {{\n        if (sink.accepted > 0 || (i > 0 && slacks[i] <= slacks[0])) continue;\n        \
-         sink.misses = 0;\n        ik_attempt(pose, given, slacks[i], &sink);\n    }}\n    return out->count;\n}}\n\n\
+         sink.misses = 0;\n        sink.doubt = 0;\n        ik_attempt(pose, given, slacks[i], &sink);\n    }}\n    return out->count;\n}}\n\n\
          void {name}_forward(const double values[{upper}_VARIABLES], {name}_frame *base_from_tip)\n{{\n    \
          double axes[IK_LINKS][6];\n{forward}}}\n\n\
          int {name}_solve(const {name}_frame *base_from_tip, const double *given, {name}_solutions *out)\n{{\n    \
@@ -370,6 +370,15 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                 block(p, first, depth + 1, loops, out);
                 let _ = writeln!(out, "{pad}}}\n{pad}if (sink->accepted == before{k}) {{");
                 block(p, otherwise, depth + 1, loops, out);
+                let _ = writeln!(out, "{pad}}}");
+            }
+            Stmt::Doubt { value, tolerance } => {
+                let _ =
+                    writeln!(out, "{pad}if (ik_abs({}) < {tolerance:?}) sink->doubt = 1;", text(p, *value));
+            }
+            Stmt::Rest(body) => {
+                let _ = writeln!(out, "{pad}if (sink->doubt || sink->accepted == 0) {{");
+                block(p, body, depth + 1, loops, out);
                 let _ = writeln!(out, "{pad}}}");
             }
             Stmt::Offer { values, angles, misses } => {

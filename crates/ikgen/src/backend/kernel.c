@@ -599,6 +599,7 @@ typedef struct {
     ik_solutions *out;
     int accepted;
     int misses;
+    int doubt;
     int described;
 } ik_sink;
 

@@ -257,6 +257,8 @@ struct Sink<'a> {
     out: &'a mut Solutions,
     accepted: usize,
     misses: usize,
+    /// An equation was near to losing roots.
+    doubt: bool,
     /// The chain is the described one, for which candidates come with their misses.
     described: bool,
 }
@@ -306,10 +308,10 @@ fn solve(program: &Program, out: &mut String) {
          solve_with(chain, false, base_from_tip, free, out);\n}\n\n\
          fn solve_with(chain: &Chain, described: bool, base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {\n    \
          out.len = 0;\n    \
-         let mut sink = Sink { arm: arm(chain), base_from_tip, out, accepted: 0, misses: 0, described };\n    \
+         let mut sink = Sink { arm: arm(chain), base_from_tip, out, accepted: 0, misses: 0, doubt: false, described };\n    \
          attempt(base_from_tip, free, SLACK, &mut sink);\n    \
          for slack in WIDER {\n        \
-         if sink.accepted == 0 && slack > SLACK {\n            sink.misses = 0;\n            \
+         if sink.accepted == 0 && slack > SLACK {\n            sink.misses = 0;\n            sink.doubt = false;\n            \
          attempt(base_from_tip, free, slack, &mut sink);\n        }\n    }\n}\n\n\
          /// Offers candidates; the equations may miss their roots by `slack`.\n\
          fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &mut Sink<'_>) {\n    \
@@ -348,23 +350,19 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                 if names.len() < 2 {
                     names.push("_");
                 }
-                let six = *kind == RootKind::Six;
-                // Six joints in general are solved as they are described.
-                let (call, slack) = if six { ("six_of", "slack - SLACK") } else { (kind.word(), "slack") };
-                let _ = writeln!(out, "{pad}let roots{k} = {call}({}, {slack});", args.join(", "));
-                let _ = writeln!(out, "{pad}let before{k} = sink.accepted;");
-                let _ = writeln!(out, "{pad}for i in 0..roots{k}.count() {{");
-                let _ = writeln!(
-                    out,
-                    "{pad}    if roots{k}.free && sink.accepted > before{k} {{\n{pad}        break;\n{pad}    }}"
-                );
-                let mut names = names.join(", ");
-                if six {
-                    let pairs: Vec<&str> = names.split(", ").collect();
-                    let pairs: Vec<String> = pairs.chunks(2).map(|p| format!("[{}]", p.join(", "))).collect();
-                    names = pairs.join(", ");
+                let args = args.join(", ");
+                if *kind == RootKind::Six {
+                    let pairs: Vec<String> = names.chunks(2).map(|p| format!("[{}]", p.join(", "))).collect();
+                    // Six joints in general are solved as they are described.
+                    let _ = writeln!(out, "{pad}let roots{k} = six_of({args}, slack - SLACK);");
+                    let _ = writeln!(out, "{pad}for i in 0..roots{k}.count() {{");
+                    let _ = writeln!(out, "{pad}    let [{}] = roots{k}.get(i);", pairs.join(", "));
+                } else {
+                    let (word, names) = (kind.word(), names.join(", "));
+                    let _ =
+                        writeln!(out, "{pad}let mut roots{k} = {word}({args}, slack).tries(sink.accepted);");
+                    let _ = writeln!(out, "{pad}while let Some([{names}]) = roots{k}.next(sink.accepted) {{");
                 }
-                let _ = writeln!(out, "{pad}    let [{names}] = roots{k}.get(i);");
                 block(p, body, depth + 1, loops, out);
                 let _ = writeln!(out, "{pad}}}");
             }
@@ -393,16 +391,23 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                 block(p, otherwise, depth + 1, loops, out);
                 let _ = writeln!(out, "{pad}}}");
             }
+            Stmt::Doubt { value, tolerance } => {
+                let _ = writeln!(out, "{pad}sink.doubt |= ({}).abs() < {tolerance:?};", p.expr_text(*value));
+            }
+            Stmt::Rest(body) => {
+                let _ = writeln!(out, "{pad}if sink.doubt || sink.accepted == 0 {{");
+                block(p, body, depth + 1, loops, out);
+                let _ = writeln!(out, "{pad}}}");
+            }
             Stmt::Offer { values, angles, misses } => {
                 let step = |value: &Value| match *value {
                     Value::Angle(c, s) => format!("[{}, {}]", p.expr_text(c), p.expr_text(s)),
                     Value::Length(x) => format!("[{}, 0.0]", p.expr_text(x)),
                 };
                 let text = |e: &Expr| p.expr_text(*e);
-                let list = |items: Vec<String>| items.join(", ");
                 let _ = writeln!(
                     out,
-                    "{pad}sink.offer(\n{pad}    [{}],\n{pad}    [{}],\n{pad}    [{}],\n{pad});",
+                    "{pad}sink.offer(\n{pad}    {},\n{pad}    {},\n{pad}    {},\n{pad});",
                     list(values.iter().map(step).collect()),
                     list(angles.iter().map(text).collect()),
                     list(misses.iter().map(text).collect()),
@@ -410,6 +415,14 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
             }
             Stmt::Emit(_) => unreachable!("a prepared program offers"),
         }
+    }
+}
+
+/// An array; of equal items one is written.
+fn list(items: Vec<String>) -> String {
+    match &items[..] {
+        [first, .., _] if items.iter().all(|item| item == first) => format!("[{first}; {}]", items.len()),
+        _ => format!("[{}]", items.join(", ")),
     }
 }
 

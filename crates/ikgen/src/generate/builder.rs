@@ -192,6 +192,12 @@ impl Builder {
         self.push(Stmt::Fallback { first, otherwise });
     }
 
+    /// Does this only if nothing was accepted before it, or an equation was in doubt. Not in another block.
+    pub fn rest(&self, write: impl FnOnce()) {
+        let body = self.nested(write);
+        self.push(Stmt::Rest(body));
+    }
+
     /// Writes to the same block, and closes the loops that this opens.
     pub fn aside(&self, write: impl FnOnce()) {
         for stmt in self.nested(write) {

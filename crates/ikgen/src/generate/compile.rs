@@ -19,6 +19,9 @@ use crate::run::Solver;
 /// Snaps below this come from the digits of the description: they need a polish, but hide no roots.
 const ROUNDING: f64 = 1e-8;
 
+/// Constants of an ideal chain are written to this part of the snap.
+const UNSEEN: f64 = 1e-3;
+
 /// Tolerance within which a chain counts as solved just as it is described.
 const EXACT: f64 = 1e-9;
 
@@ -325,17 +328,12 @@ fn with_rest(
     b: &Builder,
 ) -> Result<String, String> {
     let (mut how, mut rest) = (Ok(String::new()), Ok(String::new()));
-    b.fallback(
-        || how = write(ideal, b),
-        || {
-            b.note("where that gives nothing: six joints in general, as they are described");
-            rest = strategies::GENERAL
-                .iter()
-                .map(|s| (s.write)(described, b))
-                .next()
-                .unwrap_or(Ok(String::new()));
-        },
-    );
+    b.aside(|| how = write(ideal, b));
+    b.rest(|| {
+        b.note("where that gives nothing or leaves a doubt: six joints in general, as they are described");
+        rest =
+            strategies::GENERAL.iter().map(|s| (s.write)(described, b)).next().unwrap_or(Ok(String::new()));
+    });
     rest?;
     how.map(|how| how + ", the rest in general")
 }
@@ -382,8 +380,11 @@ fn finished(
     // Below this the difference is rounding of the description, which the check covers.
     program.snap = if snap < 1e-12 { 0.0 } else { snap };
     program.slack = if snap < ROUNDING { 0.0 } else { 4.0 * snap };
+    if program.slack > 0.0 {
+        program = passes::round(&program, decimals(UNSEEN * snap));
+    }
     if rest && program.slack > 0.0 {
-        super::doubt::ask_where_in_doubt(&mut program);
+        super::doubt::note_doubts(&mut program);
     }
     program.class = class.clone();
     let program = passes::optimise(&program);
@@ -391,6 +392,11 @@ fn finished(
     let poses = if program.slack > 0.0 { SNAPPED * options.trial_poses } else { options.trial_poses };
     let lost = trial(&program, chain, poses)?;
     Ok(Found { program, class, lost })
+}
+
+/// Decimals that tell numbers apart which differ by `size`.
+fn decimals(size: f64) -> u8 {
+    libm::ceil(-libm::log10(size)).clamp(0.0, 16.0) as u8
 }
 
 /// Runs a program on random and singular poses: how many joint vectors of the former it did not recover and how many of

@@ -1,8 +1,8 @@
 //! Where the ideal chain may have lost roots that the described one has.
 //!
 //! Two roots of an equation that have nearly fallen together, or have just missed each other, may be there on one of the chains and
-//! not on the other, and no polish leads from nothing to a solution. There the general solver is asked too: it takes the chain as it is
-//! described.
+//! not on the other, and no polish leads from nothing to a solution. After such a doubt the general solver is asked too, once: it takes
+//! the chain as it is described.
 
 use crate::ir::{Binary, Block, Expr, Exprs, Program, RootKind, Stmt, Unary};
 
@@ -10,37 +10,34 @@ use crate::ir::{Binary, Block, Expr, Exprs, Program, RootKind, Stmt, Unary};
 /// the difference of the chains.
 const REACH: f64 = 16.0;
 
-/// In a program that asks the general solver where an ideal chain gives nothing, asks it wherever the ideal chain is in doubt.
-pub(super) fn ask_where_in_doubt(program: &mut Program) {
+/// In a program that ends in the general solver, notes a doubt before each equation of the ideal chain that may lack roots.
+pub(super) fn note_doubts(program: &mut Program) {
     let reach = REACH * program.slack;
-    let exprs = &mut program.exprs;
-    for stmt in &mut program.body {
-        if let Stmt::Fallback { first, otherwise } = stmt {
-            guard(first, otherwise, exprs, reach);
-        }
-    }
+    let mut body = std::mem::take(&mut program.body);
+    note(&mut body, &mut program.exprs, reach);
+    program.body = body;
 }
 
-fn guard(block: &mut Block, general: &Block, exprs: &mut Exprs, reach: f64) {
-    let mut guarded = Vec::new();
+fn note(block: &mut Block, exprs: &mut Exprs, reach: f64) {
+    let mut noted = Vec::new();
     for mut stmt in std::mem::take(block) {
         match &mut stmt {
             Stmt::ForEach { kind, args, body, .. } => {
                 if let Some((value, tolerance)) = edge(*kind, args, exprs, reach) {
-                    let then = general.clone();
-                    guarded.push(Stmt::IfZero { value, tolerance, then, otherwise: Vec::new() });
+                    noted.push(Stmt::Doubt { value, tolerance });
                 }
-                guard(body, general, exprs, reach);
+                note(body, exprs, reach);
             }
             Stmt::IfZero { then, otherwise, .. } | Stmt::Fallback { first: then, otherwise } => {
-                guard(then, general, exprs, reach);
-                guard(otherwise, general, exprs, reach);
+                note(then, exprs, reach);
+                note(otherwise, exprs, reach);
             }
+            // The general solver has no doubts.
             _ => {}
         }
-        guarded.push(stmt);
+        noted.push(stmt);
     }
-    *block = guarded;
+    *block = noted;
 }
 
 /// What is small where the roots of an equation are about to fall together, and how small.

@@ -161,6 +161,15 @@ pub enum Stmt {
         /// Run if that gave nothing.
         otherwise: Block,
     },
+    /// Notes that an equation is near to losing roots: a [`Rest`](Self::Rest) that follows is run.
+    Doubt {
+        /// Compared in magnitude.
+        value: Expr,
+        /// With this: there is a doubt where it is smaller.
+        tolerance: f64,
+    },
+    /// Runs the block if no candidate at all was accepted before it, or if there was a doubt. Not in other statements.
+    Rest(Block),
     /// A candidate solution: one value for each variable.
     Emit(Vec<Value>),
     /// A candidate with all that its check needs; only in programs that are [prepared](crate::passes::prepare) for a chain.
@@ -263,13 +272,13 @@ impl Program {
 /// Calls `f` on each expression directly used by a statement, not by the statements nested in it.
 pub fn exprs_of(stmt: &Stmt, mut f: impl FnMut(Expr)) {
     match stmt {
-        Stmt::Let { value, .. } | Stmt::IfZero { value, .. } => f(*value),
+        Stmt::Let { value, .. } | Stmt::IfZero { value, .. } | Stmt::Doubt { value, .. } => f(*value),
         Stmt::ForEach { args, .. } => args.iter().for_each(|e| f(*e)),
         Stmt::Emit(values) => values.iter().flat_map(Value::exprs).for_each(f),
         Stmt::Offer { values, angles, misses } => {
             values.iter().flat_map(Value::exprs).chain(angles.iter().chain(misses).copied()).for_each(f);
         }
-        Stmt::Note(_) | Stmt::Fallback { .. } => {}
+        Stmt::Note(_) | Stmt::Fallback { .. } | Stmt::Rest(_) => {}
     }
 }
 
@@ -279,6 +288,7 @@ pub fn blocks_of(stmt: &Stmt) -> Vec<&Block> {
         Stmt::ForEach { body, .. } => vec![body],
         Stmt::IfZero { then, otherwise, .. } => vec![then, otherwise],
         Stmt::Fallback { first, otherwise } => vec![first, otherwise],
+        Stmt::Rest(body) => vec![body],
         _ => Vec::new(),
     }
 }
@@ -299,12 +309,13 @@ pub fn map_stmt(stmt: &Stmt, expr: &mut dyn FnMut(Expr) -> Expr) -> Stmt {
             then: then.clone(),
             otherwise: otherwise.clone(),
         },
+        Stmt::Doubt { value, tolerance } => Stmt::Doubt { value: expr(*value), tolerance: *tolerance },
         Stmt::Emit(values) => Stmt::Emit(values.iter().map(|v| v.map(expr)).collect()),
         Stmt::Offer { values, angles, misses } => Stmt::Offer {
             values: values.iter().map(|v| v.map(expr)).collect(),
             angles: angles.iter().map(|e| expr(*e)).collect(),
             misses: misses.map(expr),
         },
-        Stmt::Note(_) | Stmt::Fallback { .. } => stmt.clone(),
+        Stmt::Note(_) | Stmt::Fallback { .. } | Stmt::Rest(_) => stmt.clone(),
     }
 }

@@ -257,11 +257,7 @@ impl Reader {
                 Ok(Stmt::Let { var, value })
             }
             "zero" => {
-                self.sign('(')?;
-                let value = self.sum()?;
-                self.sign(',')?;
-                let tolerance = self.number()?;
-                self.sign(')')?;
+                let (value, tolerance) = self.smallness()?;
                 let then = self.block()?;
                 self.word("else")?;
                 let otherwise = self.block()?;
@@ -273,6 +269,11 @@ impl Reader {
                 let otherwise = self.block()?;
                 Ok(Stmt::Fallback { first, otherwise })
             }
+            "doubt" => {
+                let (value, tolerance) = self.smallness()?;
+                Ok(Stmt::Doubt { value, tolerance })
+            }
+            "rest" => Ok(Stmt::Rest(self.block()?)),
             "emit" => {
                 let mut values = Vec::new();
                 loop {
@@ -320,6 +321,16 @@ impl Reader {
                 Ok(Stmt::ForEach { kind, args, out, body })
             }
         }
+    }
+
+    /// A value and what it is compared with, in parentheses.
+    fn smallness(&mut self) -> Result<(Expr, f64), TextError> {
+        self.sign('(')?;
+        let value = self.sum()?;
+        self.sign(',')?;
+        let tolerance = self.number()?;
+        self.sign(')')?;
+        Ok((value, tolerance))
     }
 
     fn sum(&mut self) -> Result<Expr, TextError> {

@@ -53,6 +53,14 @@ fn block(p: &Program, stmts: &Block, depth: usize, out: &mut String) {
                 block(p, otherwise, depth + 1, out);
                 let _ = writeln!(out, "{pad}}}");
             }
+            Stmt::Doubt { value, tolerance } => {
+                let _ = writeln!(out, "{pad}doubt({}, {tolerance:?})", expr(p, *value));
+            }
+            Stmt::Rest(body) => {
+                let _ = writeln!(out, "{pad}rest {{");
+                block(p, body, depth + 1, out);
+                let _ = writeln!(out, "{pad}}}");
+            }
             Stmt::Emit(values) | Stmt::Offer { values, .. } => {
                 let values: Vec<String> = values
                     .iter()

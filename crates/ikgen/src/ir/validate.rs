@@ -25,6 +25,9 @@ pub enum Invalid {
     /// A free value that the program does not have.
     #[error("free{0} is not a free value of this program")]
     Free(u8),
+    /// A `rest` inside of another statement.
+    #[error("a rest stands in another statement")]
+    NestedRest,
     /// A header or branch number out of range.
     #[error("{0} is out of range")]
     Range(&'static str),
@@ -45,7 +48,12 @@ pub(super) fn program(p: &Program) -> Result<(), Invalid> {
             return Err(Invalid::Range(what));
         }
     }
-    let mut v = Validator { program: p, bound: vec![false; p.names.len()], seen: vec![false; p.names.len()] };
+    let mut v = Validator {
+        program: p,
+        bound: vec![false; p.names.len()],
+        seen: vec![false; p.names.len()],
+        depth: 0,
+    };
     v.block(&p.body)
 }
 
@@ -55,11 +63,14 @@ struct Validator<'p> {
     bound: Vec<bool>,
     /// Ever bound.
     seen: Vec<bool>,
+    /// Blocks around the statement.
+    depth: usize,
 }
 
 impl Validator<'_> {
     fn block(&mut self, block: &Block) -> Result<(), Invalid> {
         let outer = self.bound.clone();
+        self.depth += 1;
         for stmt in block {
             let mut used = Vec::new();
             exprs_of(stmt, |e| used.push(e));
@@ -88,6 +99,17 @@ impl Validator<'_> {
                     self.block(first)?;
                     self.block(otherwise)?;
                 }
+                Stmt::Doubt { tolerance, .. } => {
+                    if !(tolerance.is_finite() && *tolerance >= 0.0) {
+                        return Err(Invalid::Range("the tolerance of a doubt"));
+                    }
+                }
+                Stmt::Rest(body) => {
+                    if self.depth > 1 {
+                        return Err(Invalid::NestedRest);
+                    }
+                    self.block(body)?;
+                }
                 Stmt::Emit(values) | Stmt::Offer { values, .. } => {
                     let expected = self.program.variables;
                     if values.len() != expected {
@@ -98,6 +120,7 @@ impl Validator<'_> {
             }
         }
         self.bound = outer;
+        self.depth -= 1;
         Ok(())
     }
 

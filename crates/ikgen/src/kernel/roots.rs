@@ -51,12 +51,36 @@ impl<const N: usize> Roots<N> {
         if i < self.len { self.items[i] } else { representative(i - self.len) }
     }
 
+    /// The same to be tried one after the other, where so many solutions are known.
+    pub fn tries(self, accepted: usize) -> Tries<N> {
+        Tries { roots: self, accepted, tried: 0 }
+    }
+
     /// Adds one, if there is room.
     pub fn push(&mut self, root: [f64; 2]) {
         if self.len < N {
             self.items[self.len] = root;
             self.len += 1;
         }
+    }
+}
+
+/// Roots that are tried one after the other.
+#[derive(Clone, Copy, Debug)]
+pub struct Tries<const N: usize> {
+    roots: Roots<N>,
+    accepted: usize,
+    tried: usize,
+}
+
+impl<const N: usize> Tries<N> {
+    /// The next root: none after the last, nor where the unknown is free and more solutions are known by now than before the first.
+    pub fn next(&mut self, accepted: usize) -> Option<[f64; 2]> {
+        if self.tried == self.roots.count() || self.roots.free && accepted > self.accepted {
+            return None;
+        }
+        self.tried += 1;
+        Some(self.roots.get(self.tried - 1))
     }
 }
 

@@ -43,6 +43,13 @@ fn block(program: &Program, stmts: &Block, live: &mut BTreeSet<Var>) -> Block {
                 }
                 Stmt::Fallback { first, otherwise }
             }
+            Stmt::Rest(body) => {
+                let body = block(program, body, live);
+                if does_nothing(&body) {
+                    continue;
+                }
+                Stmt::Rest(body)
+            }
             other => other.clone(),
         };
         exprs_of(&kept_stmt, |e| names_in(program, e, live));
@@ -86,6 +93,7 @@ impl Compact<'_> {
                     }
                     *body = self.block(body);
                 }
+                Stmt::Rest(body) => *body = self.block(body),
                 Stmt::IfZero { then, otherwise, .. } | Stmt::Fallback { first: then, otherwise } => {
                     *then = self.block(then);
                     *otherwise = self.block(otherwise);

@@ -39,6 +39,7 @@ fn block(stmts: &Block, out: &mut Program) -> Block {
         Stmt::Fallback { first, otherwise } => {
             Stmt::Fallback { first: block(first, out), otherwise: block(otherwise, out) }
         }
+        Stmt::Rest(body) => Stmt::Rest(block(body, out)),
         other => other.clone(),
     };
     stmts.iter().map(each).collect()
@@ -82,6 +83,7 @@ fn doubled(stmts: &Block, mut other: Other, sine: Expr, out: &mut Program) -> Bl
                 let (args, out) = (args.clone(), names.clone());
                 result.push(Stmt::ForEach { kind: RootKind::Align, args, out, body });
             }
+            Stmt::Doubt { value, .. } if changed(*value, &other, out) == *value => result.push(stmt.clone()),
             _ => {
                 result.push(stmt.clone());
                 second.push(copy(stmt, &mut other.clone(), out));

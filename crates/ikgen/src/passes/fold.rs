@@ -50,6 +50,10 @@ impl Fold<'_> {
                     let (first, otherwise) = (self.block(&first), self.block(&otherwise));
                     out.push(Stmt::Fallback { first, otherwise });
                 }
+                Stmt::Rest(body) => {
+                    let body = self.block(&body);
+                    out.push(Stmt::Rest(body));
+                }
                 other => out.push(other),
             }
         }

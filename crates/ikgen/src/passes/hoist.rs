@@ -61,6 +61,7 @@ impl Hoist<'_> {
                     *first = self.nested(first, false);
                     *otherwise = self.nested(otherwise, true);
                 }
+                Stmt::Rest(body) => *body = self.nested(body, true),
                 Stmt::IfZero { then, otherwise, .. } => {
                     *then = self.nested(then, true);
                     *otherwise = self.nested(otherwise, true);

@@ -6,6 +6,7 @@ mod flip;
 mod fold;
 mod hoist;
 mod prepare;
+mod round;
 mod share;
 
 pub use dead::dead;
@@ -13,6 +14,7 @@ pub use flip::flip;
 pub use fold::fold;
 pub use hoist::hoist;
 pub use prepare::prepare;
+pub use round::round;
 pub use share::share;
 
 use crate::ir::{Block, Expr, Exprs, Program, Stmt};

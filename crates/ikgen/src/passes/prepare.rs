@@ -9,10 +9,19 @@ use crate::ir::{Binary, Block, Expr, Exprs, Node, Program, RootKind, Stmt, Unary
 use crate::kernel::chain::{Frame, Link};
 use crate::run::TrueChain;
 
-/// The program with every `emit` turned into an [`Offer`](Stmt::Offer) for this chain.
+/// The program with every `emit` turned into an [`Offer`](Stmt::Offer) for this chain. Of candidates that cannot be exact the angles and
+/// the misses are left open.
 ///
 /// The pose is compared in the middle of the chain, where that is cheapest: what comes after is undone on the wanted pose.
 pub fn prepare(program: &Program, chain: &TrueChain) -> Program {
+    if program.snap > 0.0 {
+        // Candidates of an ideal chain never are exact: a check of theirs would only be in vain.
+        let mut out = with_body(program, program.exprs.clone(), program.names.clone(), Vec::new());
+        let mut body = program.body.clone();
+        unchecked(&mut body, &mut out);
+        out.body = body;
+        return optimise(&out);
+    }
     let factors = 2 * chain.links.len() + 1;
     // At least the tip is undone; what lies beyond a sliding joint has no fixed lever.
     let first = chain.links.iter().rposition(|l| l.slides).map_or(1, |i| 2 * i + 2);
@@ -42,6 +51,7 @@ fn block(stmts: &mut Block, out: &mut Program, chain: &TrueChain, cut: usize, pa
                 block(body, out, chain, cut, pairs);
                 pairs.truncate(outer);
             }
+            Stmt::Rest(body) => block(body, out, chain, cut, pairs),
             Stmt::IfZero { then, otherwise, .. } | Stmt::Fallback { first: then, otherwise } => {
                 block(then, out, chain, cut, pairs);
                 block(otherwise, out, chain, cut, pairs);
@@ -58,7 +68,7 @@ fn block(stmts: &mut Block, out: &mut Program, chain: &TrueChain, cut: usize, pa
     }
 }
 
-/// Candidates of six joints at once share nothing that could be computed before: their check is left to whoever takes them.
+/// Leaves the check of candidates to whoever takes them. Those of six joints at once share nothing that could be computed before.
 fn unchecked(stmts: &mut Block, out: &mut Program) {
     let (unknown, wrong) = (out.exprs.constant(0.0), out.exprs.constant(1.0));
     for stmt in stmts {
@@ -72,6 +82,7 @@ fn unchecked(stmts: &mut Block, out: &mut Program) {
                 let angles = (0..values.len()).map(angle).collect();
                 *stmt = Stmt::Offer { values, angles, misses: [wrong; 2] };
             }
+            Stmt::ForEach { body, .. } | Stmt::Rest(body) => unchecked(body, out),
             Stmt::IfZero { then, otherwise, .. } | Stmt::Fallback { first: then, otherwise } => {
                 unchecked(then, out);
                 unchecked(otherwise, out);

@@ -128,7 +128,7 @@ impl Named<'_> {
             }
             let mut stmt = map_stmt(stmt, &mut |e| self.renamed(e));
             match &mut stmt {
-                Stmt::ForEach { body, .. } => *body = self.block(body),
+                Stmt::ForEach { body, .. } | Stmt::Rest(body) => *body = self.block(body),
                 Stmt::IfZero { then, otherwise, .. } | Stmt::Fallback { first: then, otherwise } => {
                     *then = self.block(then);
                     *otherwise = self.block(otherwise);

@@ -65,7 +65,17 @@ pub(super) enum Item {
     Six { args: Box<[u16; NUMBERS]>, out: [u16; 12], body: Vec<Item> },
     IfZero { value: u16, tolerance: f64, then: Vec<Item>, otherwise: Vec<Item> },
     Fallback { first: Vec<Item>, otherwise: Vec<Item> },
+    Doubt { value: u16, tolerance: f64 },
+    Rest(Vec<Item>),
     Offer { from: u32, to: u32, misses: [u16; 2] },
+}
+
+/// What a run keeps beside its registers.
+struct State {
+    /// Roots that are left to be followed.
+    left: u32,
+    /// Whether an equation was in doubt.
+    doubt: bool,
 }
 
 /// A program made ready to run: no lookup, no allocation.
@@ -164,8 +174,8 @@ impl Bytecode {
         registers[9..12].copy_from_slice(&base_from_tip.position);
         registers[POSE_REGISTERS..self.first_constant].copy_from_slice(free);
         registers[self.first_constant..][..self.constants.len()].copy_from_slice(&self.constants);
-        let mut left = MOST_ROOTS;
-        self.block(&self.body, registers, slack, &mut left, offer)
+        let mut state = State { left: MOST_ROOTS, doubt: false };
+        self.block(&self.body, registers, slack, &mut state, offer)
     }
 
     fn block<const N: usize>(
@@ -173,7 +183,7 @@ impl Bytecode {
         items: &[Item],
         x: &mut [f64; N],
         slack: f64,
-        left: &mut u32,
+        state: &mut State,
         offer: &mut impl FnMut(&Candidate) -> Verdict,
     ) -> usize {
         // N is a power of two: the mask replaces the bounds check.
@@ -206,29 +216,29 @@ impl Bytecode {
                     let [a, b, c, d, e, f] = args.map(|i| x[at(i)]);
                     let each = (&body[..], *out, *outputs);
                     accepted += match kind {
-                        RootKind::Align => self.each(roots::align(a, b, slack), each, x, slack, left, offer),
+                        RootKind::Align => self.each(roots::align(a, b, slack), each, x, slack, state, offer),
                         RootKind::Mirror => {
-                            self.each(roots::mirror(a, b, slack), each, x, slack, left, offer)
+                            self.each(roots::mirror(a, b, slack), each, x, slack, state, offer)
                         }
-                        RootKind::Half => self.each(roots::half(a, b, slack), each, x, slack, left, offer),
+                        RootKind::Half => self.each(roots::half(a, b, slack), each, x, slack, state, offer),
                         RootKind::Circle => {
-                            self.each(roots::circle(a, b, c, slack), each, x, slack, left, offer)
+                            self.each(roots::circle(a, b, c, slack), each, x, slack, state, offer)
                         }
                         RootKind::Quadratic => {
-                            self.each(roots::quadratic(a, b, c, slack), each, x, slack, left, offer)
+                            self.each(roots::quadratic(a, b, c, slack), each, x, slack, state, offer)
                         }
                         RootKind::Conic => {
-                            self.each(conic([a, b, c, d, e, f], slack), each, x, slack, left, offer)
+                            self.each(conic([a, b, c, d, e, f], slack), each, x, slack, state, offer)
                         }
                         RootKind::Octic | RootKind::Six => unreachable!("these have items of their own"),
                     };
                 }
                 Item::Octic { args, out, body } => {
                     let roots = octic(args.map(|i| x[at(i)]), slack);
-                    accepted += self.each(roots, (body, *out, 2), x, slack, left, offer);
+                    accepted += self.each(roots, (body, *out, 2), x, slack, state, offer);
                 }
                 Item::Six { args, out, body } => {
-                    if !take(left, SIX_ROOTS) {
+                    if !take(&mut state.left, SIX_ROOTS) {
                         continue;
                     }
                     let found = six_of(&args.map(|i| x[at(i)]), slack - self.slack);
@@ -236,16 +246,23 @@ impl Bytecode {
                         for (to, value) in out.iter().zip(found.get(i).into_iter().flatten()) {
                             x[at(*to)] = value;
                         }
-                        accepted += self.block(body, x, slack, left, offer);
+                        accepted += self.block(body, x, slack, state, offer);
                     }
                 }
                 Item::IfZero { value, tolerance, then, otherwise } => {
                     let zero = x[at(*value)].abs() < *tolerance;
-                    accepted += self.block(if zero { then } else { otherwise }, x, slack, left, offer);
+                    accepted += self.block(if zero { then } else { otherwise }, x, slack, state, offer);
                 }
                 Item::Fallback { first, otherwise } => {
-                    let found = self.block(first, x, slack, left, offer);
-                    accepted += if found > 0 { found } else { self.block(otherwise, x, slack, left, offer) };
+                    let found = self.block(first, x, slack, state, offer);
+                    accepted += if found > 0 { found } else { self.block(otherwise, x, slack, state, offer) };
+                }
+                Item::Doubt { value, tolerance } => state.doubt |= x[at(*value)].abs() < *tolerance,
+                // Only in the outermost block: what that has accepted is all.
+                Item::Rest(body) => {
+                    if state.doubt || accepted == 0 {
+                        accepted += self.block(body, x, slack, state, offer);
+                    }
                 }
                 Item::Offer { from, to, misses } => {
                     let registers = &self.offered[*from as usize..*to as usize];
@@ -262,7 +279,7 @@ impl Bytecode {
                     accepted += usize::from(verdict != Verdict::Wrong);
                     if verdict == Verdict::Last {
                         // Without roots to follow the run is over.
-                        *left = 0;
+                        state.left = 0;
                     }
                 }
             }
@@ -279,20 +296,20 @@ impl Bytecode {
         (body, out, outputs): (&[Item], [u16; 2], u8),
         x: &mut [f64; N],
         slack: f64,
-        left: &mut u32,
+        state: &mut State,
         offer: &mut impl FnMut(&Candidate) -> Verdict,
     ) -> usize {
         let mut accepted = 0;
-        for i in 0..roots.count() {
-            if roots.free && accepted > 0 || !take(left, 1) {
+        let mut tries = roots.tries(0);
+        while let Some(root) = tries.next(accepted) {
+            if !take(&mut state.left, 1) {
                 break;
             }
-            let root = roots.get(i);
             x[usize::from(out[0]) & (N - 1)] = root[0];
             if outputs > 1 {
                 x[usize::from(out[1]) & (N - 1)] = root[1];
             }
-            accepted += self.block(body, x, slack, left, offer);
+            accepted += self.block(body, x, slack, state, offer);
         }
         accepted
     }
@@ -368,6 +385,12 @@ impl Translator<'_> {
                 Stmt::Fallback { first, otherwise } => {
                     Some(Item::Fallback { first: self.block(first), otherwise: self.block(otherwise) })
                 }
+                Stmt::Doubt { value, tolerance } => {
+                    let value = self.value(*value, &mut t);
+                    self.flush(from, &mut items);
+                    Some(Item::Doubt { value, tolerance: *tolerance })
+                }
+                Stmt::Rest(body) => Some(Item::Rest(self.block(body))),
                 Stmt::Emit(values) => {
                     let (zero, far) = (self.constant(0), self.constant(f64::INFINITY.to_bits()));
                     let registers = values.iter().map(|v| self.steps_of(*v, zero, &mut t)).collect();

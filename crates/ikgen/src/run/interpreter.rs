@@ -24,6 +24,7 @@ pub fn run(
         left: MOST_ROOTS,
         offer,
         accepted: 0,
+        doubt: false,
     };
     run.block(&program.body);
     run.accepted
@@ -38,6 +39,7 @@ struct Run<'a> {
     left: u32,
     offer: &'a mut dyn FnMut(&[[f64; 2]]) -> Verdict,
     accepted: usize,
+    doubt: bool,
 }
 
 impl Run<'_> {
@@ -66,13 +68,12 @@ impl Run<'_> {
                 }
                 Stmt::ForEach { kind, args, out, body } => {
                     let args: Vec<f64> = args.iter().map(|e| self.value(*e)).collect();
-                    let roots = kind.solve(&args, self.slack);
-                    let before = self.accepted;
-                    for i in 0..roots.count() {
-                        if roots.free && self.accepted > before || !take(&mut self.left, 1) {
+                    let mut tries = kind.solve(&args, self.slack).tries(self.accepted);
+                    while let Some(root) = tries.next(self.accepted) {
+                        if !take(&mut self.left, 1) {
                             break;
                         }
-                        for (var, x) in out.iter().zip(roots.get(i)) {
+                        for (var, x) in out.iter().zip(root) {
                             self.vars[var.0 as usize] = x;
                         }
                         self.block(body);
@@ -83,6 +84,14 @@ impl Run<'_> {
                     self.block(first);
                     if self.accepted == before {
                         self.block(otherwise);
+                    }
+                }
+                Stmt::Doubt { value, tolerance } => {
+                    self.doubt |= self.value(*value).abs() < *tolerance;
+                }
+                Stmt::Rest(body) => {
+                    if self.doubt || self.accepted == 0 {
+                        self.block(body);
                     }
                 }
                 Stmt::Emit(values) | Stmt::Offer { values, .. } => {

@@ -51,6 +51,8 @@ pub(super) struct Run<'a, F: FnMut(usize, &Frame, Offer<'_>) -> bool> {
     /// Roots that are left to be followed, counted for all lanes together.
     left: u32,
     unfinished: Mask,
+    /// Lanes in which an equation was in doubt.
+    doubt: Mask,
 }
 
 impl<'a, F: FnMut(usize, &Frame, Offer<'_>) -> bool> Run<'a, F> {
@@ -60,7 +62,17 @@ impl<'a, F: FnMut(usize, &Frame, Offer<'_>) -> bool> Run<'a, F> {
         for (register, constant) in x[code.first_constant..].iter_mut().zip(&code.constants) {
             *register = [*constant; LANES];
         }
-        Self { code, x, slack, poses: Vec::new(), accept, accepted: [0; LANES], left: 0, unfinished: 0 }
+        Self {
+            code,
+            x,
+            slack,
+            poses: Vec::new(),
+            accept,
+            accepted: [0; LANES],
+            left: 0,
+            unfinished: 0,
+            doubt: 0,
+        }
     }
 
     /// Runs the program on up to [`LANES`] poses, each with its free values.
@@ -76,6 +88,7 @@ impl<'a, F: FnMut(usize, &Frame, Offer<'_>) -> bool> Run<'a, F> {
         self.accepted = [0; LANES];
         self.left = MOST_ROOTS;
         self.unfinished = 0;
+        self.doubt = 0;
         let all = ((1u16 << poses.len()) - 1) as Mask;
         self.block(&self.code.body, all);
         let empty = lanes_where(all & !self.unfinished, |lane| self.accepted[lane] == 0);
@@ -121,6 +134,14 @@ impl<'a, F: FnMut(usize, &Frame, Offer<'_>) -> bool> Run<'a, F> {
                     self.block(first, mask);
                     let none = lanes_where(mask, |lane| self.accepted[lane] == before[lane]);
                     self.block(otherwise, none);
+                }
+                Item::Doubt { value, tolerance } => {
+                    let value = self.x[usize::from(*value)];
+                    self.doubt |= lanes_where(mask, |lane| value[lane].abs() < *tolerance);
+                }
+                Item::Rest(body) => {
+                    let wanted = self.doubt | lanes_where(mask, |lane| self.accepted[lane] == 0);
+                    self.block(body, mask & wanted);
                 }
                 Item::Offer { from, to, misses } => {
                     self.offer(*from as usize..*to as usize, misses.map(|i| self.x[usize::from(i)]), mask);

@@ -52,6 +52,14 @@ pub(crate) fn kr6() -> SerialChain {
     )
 }
 
+/// The same with its last axis 0.02 mm beside the wrist: where the ideal arm loses roots six joints in general are asked.
+pub(crate) fn nearly_kr6() -> SerialChain {
+    let mut chain = kr6();
+    chain.name = "nearly_kr6".into();
+    chain.joints[5].previous_from_joint.translation.vector.y += 2e-5;
+    chain
+}
+
 /// Spherical wrist on a shoulder without any relation between its axes.
 pub(crate) fn skew() -> SerialChain {
     chain(
@@ -344,6 +352,7 @@ pub(crate) fn of_the_thesis() -> Vec<SerialChain> {
 pub(crate) fn all() -> Vec<SerialChain> {
     vec![
         kr6(),
+        nearly_kr6(),
         skew(),
         ur5(),
         ru5(),

@@ -118,8 +118,8 @@ fn rust_programs(folder: &Path, compiled: &[Compiled], std: bool, flavour: &str)
     for c in compiled {
         let name = &c.chain().name;
         let source = c.rust_source(&RustOptions { std });
-        let most =
-            if ["general,", "offset wrist,"].iter().any(|k| c.class.contains(k)) { 100_000 } else { 65_000 };
+        let large = ["general", "offset wrist,"].iter().any(|k| c.class.contains(k));
+        let most = if large { 100_000 } else { 65_000 };
         assert!(source.len() < most, "{name}: {} bytes", source.len());
         let file = folder.join(format!("{name}_{flavour}.rs"));
         std::fs::write(&file, source).unwrap();

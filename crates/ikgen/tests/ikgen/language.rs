@@ -45,6 +45,7 @@ fn bad_programs_get_a_line_and_a_reason() {
         .map_err(|e| e.to_string())
     };
     assert!(program("emit angle(px, py)").is_ok());
+    assert!(program("doubt(px, 0.1) rest { emit angle(px, py) }").is_ok());
     for (body, message) in [
         ("emit angle(px, q)", "line 8: q is not bound here"),
         ("let px = 1.0", "line 8: px already means something"),
@@ -56,6 +57,7 @@ fn bad_programs_get_a_line_and_a_reason() {
         ("emit angle(px, py) angle(px, py)", "line 0: a solution has 2 values, the chain 1 variables"),
         ("emit angle(px, free0)", "line 0: free0 is not a free value of this program"),
         ("align(px, py) -> c s { } emit angle(c, s)", "line 0: s is used where it is not bound"),
+        ("doubt(px, 0.1) zero(px, 0.1) { rest { } } else { }", "line 0: a rest stands in another statement"),
         ("solve(px)", "line 8: solve is not a statement"),
         ("emit angle(px, 1e999)", "line 8: 1e999 is not a number"),
         ("let a = (((px)", "line 9: expected ')'"),

@@ -30,6 +30,7 @@ pub(super) fn branches(
         slack,
         vars: vec![Interval::point(0.0); program.names.len()],
         found: Vec::new(),
+        doubt: false,
         values,
     };
     run.block(&program.body)?;
@@ -45,6 +46,7 @@ struct Run<'a> {
     /// Values of expressions; emptied when a variable changes.
     values: Vec<Option<Interval>>,
     found: Vec<Bounds>,
+    doubt: bool,
 }
 
 impl Run<'_> {
@@ -71,6 +73,19 @@ impl Run<'_> {
                     self.block(first)?;
                     if self.found.len() == before {
                         self.block(otherwise)?;
+                    }
+                }
+                Stmt::Doubt { value, tolerance } => {
+                    let value = self.value(*value).magnitude();
+                    if value.high < *tolerance {
+                        self.doubt = true;
+                    } else if value.low < *tolerance {
+                        return Err(Undecided);
+                    }
+                }
+                Stmt::Rest(body) => {
+                    if self.doubt || self.found.is_empty() {
+                        self.block(body)?;
                     }
                 }
                 Stmt::ForEach { kind, args, out, body } => {
