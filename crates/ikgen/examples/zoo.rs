@@ -10,10 +10,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use robotc_core::Seed;
-use robotc_core::system::{ReadError, System};
-use robotc_core::urdf::{LoadOptions, MeshPolicy, load};
-use robotc_core::{Kinematics, SerialChain, Sources};
+use robotc_core::{Seed, SerialChain};
 use robotc_ikgen::report::poses::{PoseSet, random};
 use robotc_ikgen::report::{ProofOptions, Report, SetReport, prove, prove_set};
 use robotc_ikgen::{GoalType, Options, compile};
@@ -21,18 +18,7 @@ use robotc_ikgen::{GoalType, Options, compile};
 #[allow(dead_code)]
 #[path = "../tests/ikgen/arms.rs"]
 mod arms;
-
-struct Files;
-
-impl System for Files {
-    fn read(&self, path: &Path) -> Result<Vec<u8>, ReadError> {
-        std::fs::read(path).map_err(|e| ReadError::Unreadable(e.to_string()))
-    }
-
-    fn exists(&self, path: &Path) -> bool {
-        path.exists()
-    }
-}
+mod collection;
 
 fn main() {
     let (options, arguments): (Vec<String>, Vec<String>) =
@@ -40,18 +26,10 @@ fn main() {
     let folder = Path::new(arguments.first().map_or("../shared/data/arms", String::as_str));
     let poses = arguments.get(1).and_then(|n| n.parse().ok()).unwrap_or(200);
     let filter = arguments.get(2).map_or("", String::as_str);
-    let index = std::fs::read_to_string(folder.join("INDEX.tsv")).expect("the folder has an INDEX.tsv");
     let mut arms: Vec<(String, Report)> = Vec::new();
-    for line in index.lines().skip(1) {
-        let field: Vec<&str> = line.split('\t').collect();
-        let name = field[0].trim_end_matches(".urdf");
-        if name.contains(filter) {
-            eprintln!("{name}");
-            let chain = chain(&folder.join(field[0]), field[4], field[5]);
-            let chain =
-                chain.unwrap_or_else(|| panic!("{name} has a chain from {} to {}", field[4], field[5]));
-            arms.push((name.into(), arm(&chain, poses, &options)));
-        }
+    for (name, chain) in collection::arms(folder, filter) {
+        eprintln!("{name}");
+        arms.push((name, arm(&chain, poses, &options)));
     }
     for chain in arms::of_the_thesis().into_iter().filter(|chain| chain.name.contains(filter)) {
         eprintln!("{}", chain.name);
@@ -59,14 +37,6 @@ fn main() {
     }
     summary(&arms, poses);
     table(&arms);
-}
-
-fn chain(path: &Path, base: &str, tip: &str) -> Option<SerialChain> {
-    let options = LoadOptions { meshes: MeshPolicy::Ignore, ..LoadOptions::default() };
-    let (model, _) = load(&Files, &mut Sources::new(), path, &options);
-    let kinematics = Kinematics::new(model?.into());
-    let link = |name: &str| kinematics.model().link_named(name);
-    SerialChain::between(&kinematics, link(base)?, link(tip)?).ok()
 }
 
 fn arm(chain: &SerialChain, poses: usize, options: &[String]) -> Report {

@@ -1,6 +1,6 @@
 //! Inverse kinematics of an arm.
 
-use numpy::{PyArray2, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use robotc_core::ik::InverseKinematics as _;
@@ -11,7 +11,7 @@ use robotc_kb::kinds::IkSolver;
 use robotc_kb::project::OfArm;
 
 use crate::errors::CompileError;
-use crate::solving::{self, Wanted, WantedLimits};
+use crate::solving::{self, Choice, Wanted, WantedLimits};
 
 /// All joint vectors of an arm that reach a pose.
 #[pyclass(frozen, subclass, module = "robotc")]
@@ -91,8 +91,41 @@ impl InverseKinematics {
         joint: Option<&str>,
         free: Vec<f64>,
         limits: WantedLimits,
-    ) -> PyResult<(Bound<'py, PyArray2<f64>>, f64)> {
-        solving::free_intervals(py, &self.solver, &self.free_joints, &pose, joint, free, limits)
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, String)> {
+        let (choice, wanted) = (Choice { joint, free }, Wanted::within(limits));
+        solving::free_intervals(py, &self.solver, &self.free_joints, &pose, choice, wanted)
+    }
+
+    /// The solution within limits that is nearest to a joint vector, over all values of a free joint.
+    #[pyo3(
+        signature = (pose, near, joint = None, free = Vec::new(), limits = WantedLimits::Described(true), weights = Vec::new()),
+        text_signature = "(self, pose, near, joint=None, free=(), limits=True, weights=())"
+    )]
+    #[allow(clippy::too_many_arguments, reason = "they are keywords")]
+    fn nearest<'py>(
+        &self,
+        py: Python<'py>,
+        pose: PyReadonlyArray2<'py, f64>,
+        near: Vec<f64>,
+        joint: Option<&str>,
+        free: Vec<f64>,
+        limits: WantedLimits,
+        weights: Vec<f64>,
+    ) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
+        let (choice, wanted) =
+            (Choice { joint, free }, Wanted { near: Some(near), weights, ..Wanted::within(limits) });
+        let found = solving::nearest(py, &self.solver, &self.free_joints, &pose, choice, wanted)?;
+        Ok(found.map(|joints| PyArray1::from_vec(py, joints)))
+    }
+
+    /// Branches of an arm with spherical shoulder and wrist and the swivel angles at which they keep the limits.
+    #[pyo3(signature = (pose, limits = WantedLimits::Described(true)), text_signature = "(self, pose, limits=True)")]
+    fn swivel<'py>(
+        &self,
+        pose: PyReadonlyArray2<'py, f64>,
+        limits: WantedLimits,
+    ) -> PyResult<Option<Vec<(f64, i32, i32, Vec<[f64; 2]>)>>> {
+        solving::swivel(&self.solver, &pose, Wanted::within(limits))
     }
 
     /// `base_from_tip` at these joint values, as a 4 x 4 matrix.

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use robotc_core::SerialChain;
 use robotc_core::ik::{Aliases, IkSolutions, InverseKinematics as _, Limits, Preferences};
 use robotc_ikgen::Solver;
-use robotc_ikgen::run::{Completeness, RedundancyOptions};
+use robotc_ikgen::run::{RedundancyOptions, Side, SwivelBranch};
 
 use crate::arrays;
 
@@ -29,6 +29,11 @@ pub(crate) struct Wanted {
 }
 
 impl Wanted {
+    /// Within these limits, in any order.
+    pub(crate) fn within(limits: WantedLimits) -> Self {
+        Self { limits, near: None, weights: Vec::new(), all_aliases: false, max_solutions: None }
+    }
+
     fn preferences(self) -> Preferences {
         Preferences {
             limits: match self.limits {
@@ -69,45 +74,90 @@ pub(crate) fn solve<'py>(
     Ok(arrays::rows(py, &rows, solver.variables()))
 }
 
-/// Intervals of the value of a free joint for which the pose has solutions, a row each, and how wide what was missed can be.
+/// Which values the free joints have, and which of them is asked about.
+pub(crate) struct Choice<'a> {
+    pub(crate) joint: Option<&'a str>,
+    pub(crate) free: Vec<f64>,
+}
+
+impl Choice<'_> {
+    /// The values of the free joints and the position of the one that is asked about.
+    fn resolve(mut self, free_joints: &[String]) -> PyResult<(Vec<f64>, usize)> {
+        if self.free.is_empty() && free_joints.len() == 1 {
+            self.free.push(0.0);
+        }
+        if free_joints.is_empty() || self.free.len() != free_joints.len() {
+            return Err(PyValueError::new_err(format!(
+                "expected {} free values, got {}",
+                free_joints.len(),
+                self.free.len()
+            )));
+        }
+        let k = match self.joint {
+            None => 0,
+            Some(name) => free_joints
+                .iter()
+                .position(|other| other == name)
+                .ok_or_else(|| PyKeyError::new_err(format!("{name} is not a free joint")))?,
+        };
+        Ok((self.free, k))
+    }
+}
+
+/// Intervals of the value of a free joint for which the pose has solutions, a row each, and how complete they are.
 pub(crate) fn free_intervals<'py>(
     py: Python<'py>,
     solver: &Solver,
     free_joints: &[String],
     pose: &PyReadonlyArray2<'py, f64>,
-    joint: Option<&str>,
-    mut free: Vec<f64>,
-    limits: WantedLimits,
-) -> PyResult<(Bound<'py, PyArray2<f64>>, f64)> {
-    if free.is_empty() && free_joints.len() == 1 {
-        free.push(0.0);
-    }
-    if free_joints.is_empty() || free.len() != free_joints.len() {
-        return Err(PyValueError::new_err(format!(
-            "expected {} free values, got {}",
-            free_joints.len(),
-            free.len()
-        )));
-    }
-    let k = match joint {
-        None => 0,
-        Some(name) => free_joints
-            .iter()
-            .position(|other| other == name)
-            .ok_or_else(|| PyKeyError::new_err(format!("{name} is not a free joint")))?,
-    };
-    let wanted = Wanted { limits, near: None, weights: Vec::new(), all_aliases: false, max_solutions: None };
+    choice: Choice<'_>,
+    wanted: Wanted,
+) -> PyResult<(Bound<'py, PyArray2<f64>>, String)> {
+    let (free, k) = choice.resolve(free_joints)?;
     let (pose, preferences) = (arrays::pose(pose)?, wanted.preferences());
     let options = RedundancyOptions::default();
     let found = py
         .detach(|| solver.free_intervals(&pose, &free, k, &preferences, &options))
         .map_err(|error| PyValueError::new_err(error.to_string()))?;
-    let width = match found.completeness {
-        Completeness::Complete => 0.0,
-        Completeness::ToWidth(width) | Completeness::Sampled(width) => width,
-    };
     let rows: Vec<Vec<f64>> = found.intervals.iter().map(|ends| ends.to_vec()).collect();
-    Ok((arrays::rows(py, &rows, 2), width))
+    Ok((arrays::rows(py, &rows, 2), found.completeness.to_string()))
+}
+
+/// The solution nearest to the wanted joint vector over all values of a free joint.
+pub(crate) fn nearest(
+    py: Python<'_>,
+    solver: &Solver,
+    free_joints: &[String],
+    pose: &PyReadonlyArray2<'_, f64>,
+    choice: Choice<'_>,
+    wanted: Wanted,
+) -> PyResult<Option<Vec<f64>>> {
+    let (free, k) = choice.resolve(free_joints)?;
+    let (pose, preferences) = (arrays::pose(pose)?, wanted.preferences());
+    let options = RedundancyOptions::default();
+    py.detach(|| solver.solve_nearest(&pose, &free, k, &preferences, &options))
+        .map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+/// A branch of an arm with spherical shoulder and wrist: elbow, sides of the second and of the sixth joint, intervals of the swivel angle.
+type Branch = (f64, i32, i32, Vec<[f64; 2]>);
+
+/// The swivel angles of a pose within limits; `None` for other arms.
+pub(crate) fn swivel(
+    solver: &Solver,
+    pose: &PyReadonlyArray2<'_, f64>,
+    wanted: Wanted,
+) -> PyResult<Option<Vec<Branch>>> {
+    let found = solver
+        .swivel(&arrays::pose(pose)?, &wanted.preferences())
+        .map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let side = |side| match side {
+        Side::Positive => 1,
+        Side::Negative => -1,
+        Side::Aligned => 0,
+    };
+    let branch = |b: SwivelBranch| (b.elbow, side(b.shoulder), side(b.wrist), b.intervals);
+    Ok(found.map(|branches| branches.into_iter().map(branch).collect()))
 }
 
 /// `base_from_tip` at these joint values, as a 4 x 4 matrix.

@@ -51,11 +51,13 @@ def test_free_intervals(solver):
     joints = [0.1, -0.4, 0.3, -1.8, 0.2, 1.7, 0.5]
     given = joints[solver.joint_names.index(solver.free_joints[0])]
     pose = solver.fk(joints)
-    intervals, width = solver.free_intervals(pose)
-    assert intervals.shape[1] == 2 and width < 1e-4
+    intervals, completeness = solver.free_intervals(pose)
+    assert intervals.shape[1] == 2 and completeness.startswith("complete to width")
     assert any(low <= given <= high for low, high in intervals)
     for low, high in intervals:
         assert len(solver.solve(pose, [0.5 * (low + high)], limits=True)) > 0
+    assert np.allclose(solver.nearest(pose, joints), joints, atol=1e-6)
+    assert solver.swivel(pose) is None
     with pytest.raises(KeyError, match="elbow is not a free joint"):
         solver.free_intervals(pose, "elbow")
 

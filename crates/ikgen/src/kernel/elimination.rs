@@ -46,8 +46,20 @@ fn functions(line: &Line) -> [f64; 14] {
     [p[0], p[1], p[2], l[0], l[1], l[2], pp, pl, m[0], m[1], m[2], w[0], w[1], w[2]]
 }
 
+/// Coefficients of the products of `1, c, s` of `q3`, `q4` and `q5`, less what is constant on the right side.
+pub type Left = [[f64; 27]; 14];
+
+/// Coefficients of the products of `1, c, s` of `q1` and `q2`.
+pub type Right = [[f64; 9]; 14];
+
 /// The equations without `q1` and `q2`, for the loop `e1 ... e6 = goal`. The half tangent is that of `q4`, or of `q5` if `swapped`.
 pub fn eliminate(lines: &[Line; 6], goal: &Motion, swapped: bool) -> Six {
+    let (left, right) = sides(lines, goal, swapped);
+    without_right(left, right)
+}
+
+/// Both sides of the fourteen equations.
+pub fn sides(lines: &[Line; 6], goal: &Motion, swapped: bool) -> (Left, Right) {
     let origin = lines[2].point;
     let mut size = 0.0f64;
     for line in lines {
@@ -92,6 +104,11 @@ pub fn eliminate(lines: &[Line; 6], goal: &Motion, swapped: bool) -> Six {
         fit(left, 9);
         left[0] -= right[0];
     }
+    (left, right)
+}
+
+/// What of the left side holds whatever `q1` and `q2` are.
+pub fn without_right(mut left: Left, mut right: Right) -> Six {
     reflect(&mut left, &mut right);
     let mut six = [[0.0; 27]; 6];
     six.copy_from_slice(&left[8..]);
@@ -108,7 +125,7 @@ pub fn eliminate(lines: &[Line; 6], goal: &Motion, swapped: bool) -> Six {
 }
 
 /// Takes all columns of `right` but the first to its first eight rows, by reflections of both sides.
-fn reflect(left: &mut [[f64; 27]; 14], right: &mut [[f64; 9]; 14]) {
+fn reflect(left: &mut Left, right: &mut Right) {
     let mut done = [false; 9];
     done[0] = true;
     for step in 0..8 {

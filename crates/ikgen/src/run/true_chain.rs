@@ -7,6 +7,7 @@ use robotc_core::model::{ChainMotion, SerialChain};
 use super::frame;
 use crate::kernel::candidate::Arm;
 use crate::kernel::chain::{Frame, Link, MAX_JOINTS};
+use crate::kernel::vector::Line;
 
 /// A serial chain in the form of the kernel: every axis is the z axis of its joint frame, offsets are folded in.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,6 +57,23 @@ impl TrueChain {
         }
         let last_from_tip = frame(&(aligned_from_described * chain.last_from_tip));
         Some(Self { links, last_from_tip, variables: chain.variables.len(), slides })
+    }
+
+    /// The lines about which its joints turn at zero, and the pose of the tip there, in the base frame; `None` unless all joints turn, each by a
+    /// variable of its own, in order.
+    pub(crate) fn lines(&self) -> Option<(Vec<Line>, Frame)> {
+        let plain = |(i, link): (usize, &Link)| !link.slides && link.variable == i && link.ratio == 1.0;
+        if !self.links.iter().enumerate().all(plain) {
+            return None;
+        }
+        let mut at =
+            Frame { rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], position: [0.0; 3] };
+        let lines = self.links.iter().map(|link| {
+            at = at.times(&link.previous_from_joint);
+            Line { direction: at.rotation.map(|row| row[2]), point: at.position }
+        });
+        let lines = lines.collect();
+        Some((lines, at.times(&self.last_from_tip)))
     }
 
     /// The chain as the kernel's functions take it.

@@ -85,6 +85,12 @@ fn intervals_are_what_sampling_finds() {
         println!("{}: {count} intervals of 6 poses, to {width:e}", chain.name);
         assert!(count >= 6 && width <= 1e-5, "{} {count} {width}", chain.name);
     }
+    // No three axes meet.
+    if let Some(chain) = real("flexiv_rizon4", "world", "flange") {
+        let (count, width) = agrees(&chain, GoalType::Transform6D, 4);
+        println!("{}: {count} intervals of 4 poses, to {width:e}", chain.name);
+        assert!(count >= 4 && width < 1e-3, "{} {count} {width}", chain.name);
+    }
     let (count, width) = agrees(&limited(arms::wam4()), GoalType::Translation3D, 6);
     assert!(count >= 6 && width <= 1e-5, "{count} {width}");
 }

@@ -147,11 +147,31 @@ class InverseKinematics:
         joint: str | None = None,
         free: Sequence[float] = (),
         limits: bool | Sequence[Sequence[float]] | Array = True,
-    ) -> tuple[Array, float]:
+    ) -> tuple[Array, str]:
         """Values of a free joint, by default the first, for which `base_from_tip` has solutions within limits.
 
-        Intervals, shape (intervals, 2), ascending, and how wide what was missed between them can be. `free` gives the values of the free
-        joints when there are several.
+        Intervals, shape (intervals, 2), ascending, and how much of the truth they are: "complete", "complete to width 1e-6", or "sampled in
+        steps of ...". `free` gives the values of the free joints when there are several.
+        """
+    def nearest(
+        self,
+        pose: Array,
+        near: Sequence[float] | Array,
+        joint: str | None = None,
+        free: Sequence[float] = (),
+        limits: bool | Sequence[Sequence[float]] | Array = True,
+        weights: Sequence[float] | Array = (),
+    ) -> Array | None:
+        """The solution within limits that is nearest to `near`, over all values of a free joint; `None` when there is none."""
+    def swivel(
+        self,
+        pose: Array,
+        limits: bool | Sequence[Sequence[float]] | Array = True,
+    ) -> list[tuple[float, int, int, list[list[float]]]] | None:
+        """Of an arm whose shoulder and wrist are spherical: the branches that keep the limits.
+
+        Each with the value of the elbow, the sides of the second and of the sixth joint (1, -1, or 0 where the axes beside them line up), and the
+        intervals of the swivel angle about the line from shoulder to wrist. `None` for other arms.
         """
     def fk(self, joints: Sequence[float]) -> Array:
         """`base_from_tip`, shape (4, 4)."""

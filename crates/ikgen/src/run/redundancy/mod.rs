@@ -8,35 +8,36 @@
 //!
 //! With a spherical shoulder and a spherical wrist the set is known in closed form ([`Solver::swivel`]), and complete.
 //!
-//! The general solver of six joints is not made of equations with one unknown: with it only points can be tried, and the result says so.
+//! The general solver of six joints is not made of equations with one unknown. With it seven turning joints are cut where branches may meet
+//! (`general`) and where a joint comes to a limit; of other chains only points can be tried, and the result says so.
 
 // `!(x < y)` is meant: a NaN must count as too large.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod bounds;
+mod general;
 mod interval;
 mod pick;
+mod search;
 mod sinusoid;
 mod spherical;
 mod swivel;
 mod trigonometric;
+mod two_angles;
 
 use std::f64::consts::PI;
 
 use robotc_core::Pose;
-use robotc_core::ik::{IkSolutions, PreferenceError, Preferences, VariableRange};
+use robotc_core::ik::{PreferenceError, Preferences, VariableRange};
 use robotc_core::model::ChainMotion;
 use robotc_core::rng::Rng;
 
 pub use self::spherical::Side;
 pub use self::swivel::SwivelBranch;
 
-use self::interval::Interval;
-use super::{Solver, frame};
+use self::search::{POINTS, Search, State};
+use super::Solver;
 use crate::ir::RootKind;
-
-/// Points that are tried where intervals say nothing.
-const POINTS: usize = 400;
 
 /// Choices of [`Solver::free_intervals`].
 #[derive(Debug, Clone, PartialEq)]
@@ -142,20 +143,6 @@ impl FreeIntervals {
     }
 }
 
-/// What a cell is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum State {
-    Inside,
-    Outside,
-    Unknown,
-}
-
-struct Cell {
-    low: f64,
-    high: f64,
-    state: State,
-}
-
 impl Solver {
     /// The values of the `k`-th free variable for which the pose has solutions that keep the limits of `preferences`; the other free
     /// variables have the values in `free`.
@@ -199,10 +186,16 @@ impl Solver {
             ranges: &ranges,
             first: Preferences { max_solutions: 1, near: None, ..preferences.clone() },
         };
-        let sampled = program.uses(RootKind::Six);
         let width = options.width.max(100.0 * program.slack);
-        let cells =
-            if sampled { search.points(low, high) } else { search.cells(low, high, width, options.cells) };
+        // Roots of eight waves take long to bound, six joints at once cannot be.
+        let general = program.uses(RootKind::Six) || program.uses(RootKind::Octic);
+        let changes = general.then(|| search.between_changes([low, high], options)).flatten();
+        let sampled = changes.is_none() && program.uses(RootKind::Six);
+        let cells = match changes {
+            Some(cells) => cells,
+            None if sampled => search.points(low, high),
+            None => search.cells(low, high, width, options.cells),
+        };
         let unknown =
             cells.iter().filter(|c| c.state == State::Unknown).map(|c| c.high - c.low).fold(0.0, f64::max);
         let step = (high - low) / POINTS as f64;
@@ -228,165 +221,4 @@ fn united(mut intervals: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
         }
     }
     found
-}
-
-struct Search<'a> {
-    solver: &'a Solver,
-    base_from_tip: &'a Pose,
-    free: &'a [f64],
-    k: usize,
-    ranges: &'a [VariableRange],
-    first: Preferences,
-}
-
-impl Search<'_> {
-    /// Whether there is a solution at a value.
-    fn holds(&self, value: f64) -> bool {
-        let mut free = self.free.to_vec();
-        free[self.k] = value;
-        let mut out = IkSolutions::new();
-        let done = self.solver.solve_preferred(self.base_from_tip, &free, &self.first, &mut out);
-        done.is_ok() && !out.is_empty()
-    }
-
-    /// What can be said of all values of a cell.
-    fn state(&self, low: f64, high: f64) -> State {
-        let program = self.solver.program();
-        let mut free: Vec<Interval> = self.free.iter().map(|x| Interval::point(*x)).collect();
-        free[self.k] = Interval { low, high };
-        let Ok(branches) = bounds::branches(program, &frame(self.base_from_tip), &free, program.slack) else {
-            return State::Unknown;
-        };
-        let mut state = State::Outside;
-        for branch in &branches {
-            match self.keeps_limits(branch, 100.0 * program.slack) {
-                // A program may offer what is none: the solver has the last word.
-                Some(true) if self.holds(0.5 * (low + high)) => return State::Inside,
-                Some(false) => {}
-                _ => state = State::Unknown,
-            }
-        }
-        state
-    }
-
-    /// Whether all solutions of a branch keep the limits, or none does.
-    fn keeps_limits(&self, branch: &[Interval], slack: f64) -> Option<bool> {
-        let mut all = Some(true);
-        for (v, (range, value)) in self.ranges.iter().zip(branch).enumerate() {
-            if self.solver.program().free.contains(&v) || range.is_continuous() {
-                continue;
-            }
-            // The slack of limits, and rounding of the bounds.
-            let value = value.wider(slack + 1e-12);
-            let turns = if range.motion == ChainMotion::Revolute { -3..=3 } else { 0..=0 };
-            let aliases = turns.map(|t| value.plus(Interval::point(2.0 * PI * f64::from(t))));
-            let mut here = Some(false);
-            for alias in aliases {
-                if range.lower <= alias.low && alias.high <= range.upper {
-                    here = Some(true);
-                    break;
-                }
-                if alias.high >= range.lower - 2e-9 && alias.low <= range.upper + 2e-9 {
-                    here = None;
-                }
-            }
-            match here {
-                Some(false) => return Some(false),
-                Some(true) => {}
-                None => all = None,
-            }
-        }
-        all
-    }
-
-    /// Cells of known state, and those of unknown state that are narrower than `width` or for which `most` did not suffice.
-    fn cells(&self, low: f64, high: f64, width: f64, most: usize) -> Vec<Cell> {
-        let first = 64;
-        let step = (high - low) / first as f64;
-        let mut open: Vec<[f64; 2]> = (0..first)
-            .rev()
-            .map(|k| [low + step * k as f64, if k + 1 == first { high } else { low + step * (k + 1) as f64 }])
-            .collect();
-        let mut cells: Vec<Cell> = Vec::new();
-        let mut looked = 0;
-        while let Some([low, high]) = open.pop() {
-            looked += 1;
-            let state = self.state(low, high);
-            if state == State::Unknown && high - low > width && looked < most {
-                let middle = 0.5 * (low + high);
-                open.push([middle, high]);
-                open.push([low, middle]);
-                continue;
-            }
-            match cells.last_mut() {
-                Some(last) if last.state == state => last.high = high,
-                _ => cells.push(Cell { low, high, state }),
-            }
-        }
-        cells
-    }
-
-    /// Cells between points at which the solver was asked.
-    fn points(&self, low: f64, high: f64) -> Vec<Cell> {
-        let at = |k: usize| if k == POINTS { high } else { low + (high - low) / POINTS as f64 * k as f64 };
-        let mut cells: Vec<Cell> = Vec::new();
-        let mut before = self.holds(low);
-        for k in 0..POINTS {
-            let after = self.holds(at(k + 1));
-            let state = match (before, after) {
-                (true, true) => State::Inside,
-                (false, false) => State::Outside,
-                _ => State::Unknown,
-            };
-            before = after;
-            match cells.last_mut() {
-                Some(last) if last.state == state && state != State::Unknown => last.high = at(k + 1),
-                _ => cells.push(Cell { low: at(k), high: at(k + 1), state }),
-            }
-        }
-        cells
-    }
-
-    /// The intervals that cells make; inside of unknown ones the solver is asked.
-    fn intervals(&self, cells: &[Cell]) -> Vec<[f64; 2]> {
-        let whole = cells.last().map_or(0.0, |c| c.high) - cells.first().map_or(0.0, |c| c.low);
-        let step = (whole / POINTS as f64).max(f64::MIN_POSITIVE);
-        let mut found: Vec<[f64; 2]> = Vec::new();
-        let mut add = |low: f64, high: f64| match found.last_mut() {
-            Some(last) if last[1] >= low => last[1] = last[1].max(high),
-            _ => found.push([low, high]),
-        };
-        for cell in cells {
-            match cell.state {
-                State::Outside => {}
-                State::Inside => add(cell.low, cell.high),
-                State::Unknown => {
-                    let parts = ((cell.high - cell.low) / step).ceil().max(4.0) as usize;
-                    let at = |i: usize| cell.low + (cell.high - cell.low) * (i as f64 / parts as f64);
-                    let holds: Vec<bool> = (0..=parts).map(|i| self.holds(at(i))).collect();
-                    for i in 0..parts {
-                        match (holds[i], holds[i + 1]) {
-                            (true, true) => add(at(i), at(i + 1)),
-                            (true, false) => add(at(i), self.end(at(i), at(i + 1))),
-                            (false, true) => add(self.end(at(i + 1), at(i)), at(i + 1)),
-                            (false, false) => {}
-                        }
-                    }
-                }
-            }
-        }
-        found
-    }
-
-    /// The last value with a solution on the way from one that has one to one that has none.
-    fn end(&self, mut inside: f64, mut outside: f64) -> f64 {
-        for _ in 0..60 {
-            let middle = 0.5 * (inside + outside);
-            if middle == inside || middle == outside || (inside - outside).abs() < 1e-12 {
-                break;
-            }
-            if self.holds(middle) { inside = middle } else { outside = middle }
-        }
-        inside
-    }
 }

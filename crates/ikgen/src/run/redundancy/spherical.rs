@@ -138,21 +138,10 @@ pub(super) struct Spread {
 impl SphericalArm {
     /// The arm, if a chain is one.
     pub(super) fn of(chain: &TrueChain) -> Option<Self> {
-        let plain = |(i, link): (usize, &crate::kernel::chain::Link)| {
-            !link.slides && link.variable == i && link.ratio == 1.0
-        };
-        if chain.links.len() != 7 || chain.variables != 7 || !chain.links.iter().enumerate().all(plain) {
-            return None;
-        }
-        let mut at =
-            Frame { rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], position: [0.0; 3] };
-        let (mut axes, mut points) = ([Vector3::zeros(); 7], [Vector3::zeros(); 7]);
-        for (i, link) in chain.links.iter().enumerate() {
-            at = at.times(&link.previous_from_joint);
-            axes[i] = Vector3::from(at.rotation.map(|row| row[2]));
-            points[i] = Vector3::from(at.position);
-        }
-        let tip = at.times(&chain.last_from_tip);
+        let (lines, tip) = chain.lines()?;
+        let axes: [Vector3<f64>; 7] =
+            lines.iter().map(|line| line.direction.into()).collect::<Vec<_>>().try_into().ok()?;
+        let points: Vec<Vector3<f64>> = lines.iter().map(|line| line.point.into()).collect();
         let at_right_angles = |i: usize| axes[i].dot(&axes[i + 1]).abs() < EXACT;
         if ![0, 1, 4, 5].into_iter().all(at_right_angles) {
             return None;
