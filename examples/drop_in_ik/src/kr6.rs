@@ -7,7 +7,9 @@
 #![allow(dead_code, unused_variables, clippy::all)]
 
 pub use chain::{Frame, Link};
+pub use family::{Families, Family};
 use candidate::{Arm, MOST_MISSES, WIDER, is_exact};
+use family::{families_of, member_of};
 use math::{angle_of, cos_sin, mirrored, opposite, sqrt};
 use roots::{align, circle, half};
 
@@ -151,6 +153,23 @@ pub fn forward(values: &[f64; VARIABLES]) -> Frame {
 /// All solutions for a pose of the chain as described, given the values of the variables in [`FREE`].
 pub fn solve(base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {
     solve_with(&DESCRIBED, true, base_from_tip, free, out);
+}
+
+/// How joints can move together and leave the tip where it is, through a solution of a pose: where axes have lined up. None at a
+/// regular pose.
+pub fn families(base_from_tip: &Frame, solution: &[f64; VARIABLES]) -> Families {
+    families_of(&arm(&DESCRIBED), base_from_tip, solution)
+}
+
+/// The member of a family through a solution at `t`, angles not brought back to (-pi, pi]; nothing outside of its interval.
+pub fn family_member(
+    base_from_tip: &Frame,
+    solution: &[f64; VARIABLES],
+    family: &Family,
+    t: f64,
+) -> Option<[f64; VARIABLES]> {
+    let mut member = *solution;
+    member_of(&arm(&DESCRIBED), base_from_tip, family, &mut member, t).then_some(member)
 }
 
 fn arm(chain: &Chain) -> Arm<'_> {
@@ -823,7 +842,7 @@ pub fn polish(
 }
 
 /// Distance to the pose, its six-vector (metres, radians), and the column of each variable.
-fn linearise(
+pub fn linearise(
     links: &[Link],
     last_from_tip: &Frame,
     base_from_tip: &Frame,
@@ -1045,6 +1064,237 @@ fn principal(angle: f64) -> f64 {
         turned += TAU;
     }
     turned
+}
+}
+
+mod family {
+
+//! Continua of solutions at singular poses: directions in which joints move and the tip does not, followed on the true chain.
+//!
+//! Where axes have lined up the Jacobian has lost rank; so it has where an arm is stretched, and nothing can move. What tells the two apart
+//! is to go there: a family is what stays on the pose to the tolerance of solutions.
+
+use super::candidate::Arm;
+use super::chain::{Frame, MAX_JOINTS, TOLERANCE, linearise, polish};
+
+/// What is left of the Jacobian below this may be that of a continuum.
+const SINGULAR: f64 = 1e-6;
+
+/// How far the leading joint goes at a time along a curve.
+const STEP: f64 = 0.05;
+
+/// Steps along a curve are cut down to this.
+const SMALLEST: f64 = 1e-3;
+
+/// Infinitely many solutions through one.
+#[derive(Clone, Copy, Debug)]
+pub struct Family {
+    /// Which joints move together: 0 for those that stay, 1 for the leading one, radians or metres.
+    pub direction: [f64; MAX_JOINTS],
+    /// The leading joint.
+    pub leader: usize,
+    /// Whether `solution + t direction` reaches the pose for every `t`; otherwise the family is a curve that starts in that direction, and
+    /// `t` is how far the leading joint has moved.
+    pub line: bool,
+    /// Smallest and largest `t`, zero inside; from -pi to pi when the family closes.
+    pub interval: [f64; 2],
+}
+
+/// The families through one solution.
+#[derive(Clone, Copy, Debug)]
+pub struct Families {
+    items: [Family; MAX_JOINTS],
+    len: usize,
+}
+
+impl Families {
+    /// All of them.
+    pub fn as_slice(&self) -> &[Family] {
+        &self.items[..self.len]
+    }
+}
+
+/// The families through a solution.
+pub fn families_of(arm: &Arm<'_>, base_from_tip: &Frame, solution: &[f64]) -> Families {
+    use core::f64::consts::PI;
+    let none = Family { direction: [0.0; MAX_JOINTS], leader: 0, line: false, interval: [0.0; 2] };
+    let mut found = Families { items: [none; MAX_JOINTS], len: 0 };
+    let (still, count) = still_directions(arm, base_from_tip, solution);
+    for (direction, leader) in &still[..count] {
+        let mut family = Family { direction: *direction, leader: *leader, line: true, interval: [-PI, PI] };
+        for i in 0..solution.len() {
+            family.line = family.line && (direction[i] == 0.0 || !arm.slides[i]);
+        }
+        for t in [0.05, -0.4, 1.1, -2.0, 2.9] {
+            let at = along(solution, direction, t);
+            let distance = arm.forward_values(&at[..solution.len()]).distance(base_from_tip);
+            family.line = family.line && distance < TOLERANCE;
+        }
+        if !family.line {
+            for end in 0..2 {
+                let mut at = along(solution, direction, 0.0);
+                let t = family.interval[end];
+                family.interval[end] =
+                    follow(arm, base_from_tip, &family, &mut at[..solution.len()], t, SMALLEST);
+            }
+        }
+        if family.line || family.interval[1] - family.interval[0] > STEP {
+            found.items[found.len] = family;
+            found.len += 1;
+        }
+    }
+    found
+}
+
+/// Brings `values` from the solution to the member at `t`, angles not brought back to (-pi, pi]; says whether there is one.
+pub fn member_of(arm: &Arm<'_>, base_from_tip: &Frame, family: &Family, values: &mut [f64], t: f64) -> bool {
+    let [low, high] = family.interval;
+    // Rounding at an end is not outside.
+    if !(low - TOLERANCE <= t && t <= high + TOLERANCE) {
+        return false;
+    }
+    let t = t.clamp(low, high);
+    if family.line {
+        let at = along(values, &family.direction, t);
+        values.copy_from_slice(&at[..values.len()]);
+        return true;
+    }
+    follow(arm, base_from_tip, family, values, t, 0.5 * SMALLEST) == t
+}
+
+fn along(values: &[f64], direction: &[f64; MAX_JOINTS], t: f64) -> [f64; MAX_JOINTS] {
+    let mut at = [0.0; MAX_JOINTS];
+    for i in 0..values.len() {
+        at[i] = values[i] + t * direction[i];
+    }
+    at
+}
+
+/// Follows a curve until the leading joint has moved by `t`; returns how far it came. Steps are no smaller than `least`.
+fn follow(
+    arm: &Arm<'_>,
+    base_from_tip: &Frame,
+    family: &Family,
+    values: &mut [f64],
+    t: f64,
+    least: f64,
+) -> f64 {
+    let n = values.len();
+    let mut held = [false; MAX_JOINTS];
+    held[..n].copy_from_slice(arm.held);
+    held[family.leader] = true;
+    let (mut last, mut gone, mut step) = (family.direction, 0.0, STEP);
+    let sign = if t < 0.0 { -1.0 } else { 1.0 };
+    while gone < t.abs() && step >= least {
+        let rest = t.abs() - gone;
+        let by = sign * if step < rest { step } else { rest };
+        let wanted = along(values, &last, by);
+        let mut next = wanted;
+        let left = polish(arm.links, arm.last_from_tip, base_from_tip, &mut next[..n], &held[..n]);
+        let mut near = left < TOLERANCE;
+        for i in 0..n {
+            near = near && (next[i] - wanted[i]).abs() < 4.0 * STEP;
+        }
+        if near {
+            for i in 0..n {
+                last[i] = (next[i] - values[i]) / by;
+            }
+            values.copy_from_slice(&next[..n]);
+            gone = if step < rest { gone + step } else { t.abs() };
+        } else {
+            step *= 0.5;
+        }
+    }
+    sign * gone
+}
+
+/// A basis of the directions in which the joints move and the tip does not, to first order, and how many there are: each with its leading
+/// joint, whose entry is 1 and 0 in the others. Joints that the caller gave stay.
+fn still_directions(
+    arm: &Arm<'_>,
+    base_from_tip: &Frame,
+    values: &[f64],
+) -> ([([f64; MAX_JOINTS], usize); MAX_JOINTS], usize) {
+    let (_, _, mut columns) = linearise(arm.links, arm.last_from_tip, base_from_tip, values);
+    let mut joints = [0; MAX_JOINTS];
+    let mut n = 0;
+    for i in 0..values.len() {
+        if !arm.held[i] {
+            (joints[n], columns[n]) = (i, columns[i]);
+            n += 1;
+        }
+    }
+    // Elimination with the largest entry of what is left as pivot.
+    let mut rank = 0;
+    while rank < n && rank < 6 {
+        let (mut column, mut row) = (rank, rank);
+        for c in rank..n {
+            for r in rank..6 {
+                if columns[c][r].abs() > columns[column][row].abs() {
+                    (column, row) = (c, r);
+                }
+            }
+        }
+        if columns[column][row].abs() < SINGULAR {
+            break;
+        }
+        columns.swap(rank, column);
+        joints.swap(rank, column);
+        for c in &mut columns[..n] {
+            c.swap(rank, row);
+        }
+        for r in rank + 1..6 {
+            let factor = columns[rank][r] / columns[rank][rank];
+            for c in &mut columns[rank..n] {
+                c[r] -= factor * c[rank];
+            }
+        }
+        rank += 1;
+    }
+    let mut found = [([0.0; MAX_JOINTS], 0); MAX_JOINTS];
+    let count = n - rank;
+    for k in 0..count {
+        let mut x = [0.0; MAX_JOINTS];
+        x[rank + k] = 1.0;
+        for r in (0..rank).rev() {
+            let mut sum = 0.0;
+            for c in r + 1..n {
+                sum += columns[c][r] * x[c];
+            }
+            x[r] = -sum / columns[r][r];
+        }
+        for c in 0..n {
+            found[k].0[joints[c]] = x[c];
+        }
+    }
+    for k in 0..count {
+        // The largest entry leads, of equal ones the last: dividing by it loses nothing.
+        let (mut row, mut leader) = (found[k].0, 0);
+        for i in 0..values.len() {
+            if row[i].abs() >= row[leader].abs() * (1.0 - 1e-6) {
+                leader = i;
+            }
+        }
+        row = row.map(|x| x / row[leader]);
+        for other in 0..count {
+            let factor = found[other].0[leader];
+            for i in 0..values.len() {
+                found[other].0[i] -= factor * row[i];
+            }
+        }
+        found[k] = (row, leader);
+    }
+    // Rounding of the elimination; what is meant is checked on the chain.
+    for (direction, _) in &mut found[..count] {
+        for x in direction {
+            for whole in [-1.0, 0.0, 1.0] {
+                if (*x - whole).abs() < 1e-7 {
+                    *x = whole;
+                }
+            }
+        }
+    }
+    (found, count)
 }
 }
 

@@ -50,7 +50,7 @@ fn tests(program: &Program) -> String {
 /// What the file offers, and how candidates become solutions.
 fn api(program: &Program) -> String {
     if program.goal == GoalType::default() {
-        return API.into();
+        return API.replace("FAMILIES", FAMILIES);
     }
     let rest: Vec<String> = program.goal.at_rest().iter().map(|x| format!("{x:?}")).collect();
     let forward = format!(
@@ -74,10 +74,13 @@ fn api(program: &Program) -> String {
             self.out.values[self.out.len].copy_from_slice(values);
 ";
     assert!(API.contains(keep), "the text above is part of the other");
-    API.replace("    arm(&DESCRIBED).forward_values(values)", &forward).replace(keep, keep_part).replace(
-        "steps: [[f64; 2]; VARIABLES], mut values: [f64; VARIABLES]",
-        "steps: [[f64; 2]; ALL], mut values: [f64; ALL]",
-    )
+    API.replace("FAMILIES", "")
+        .replace("    arm(&DESCRIBED).forward_values(values)", &forward)
+        .replace(keep, keep_part)
+        .replace(
+            "steps: [[f64; 2]; VARIABLES], mut values: [f64; VARIABLES]",
+            "steps: [[f64; 2]; ALL], mut values: [f64; ALL]",
+        )
 }
 
 /// The tests that a file carries.
@@ -150,8 +153,10 @@ fn header(program: &Program, out: &mut String) {
 /// What the file's own code may call.
 const USES: &str = "\
 pub use chain::{Frame, Link};
+pub use family::{Families, Family};
 use candidate::{Arm, MOST_MISSES, WIDER, is_exact};
 use conic::conic;
+use family::{families_of, member_of};
 use math::{angle_of, cos_sin, mirrored, opposite, sqrt};
 use octic::octic;
 use roots::{align, circle, half, mirror, quadratic};
@@ -216,6 +221,27 @@ fn frame(f: &Frame, pad: &str) -> String {
     )
 }
 
+/// Continua of solutions, known of whole poses.
+const FAMILIES: &str = "\
+/// How joints can move together and leave the tip where it is, through a solution of a pose: where axes have lined up. None at a
+/// regular pose.
+pub fn families(base_from_tip: &Frame, solution: &[f64; VARIABLES]) -> Families {
+    families_of(&arm(&DESCRIBED), base_from_tip, solution)
+}
+
+/// The member of a family through a solution at `t`, angles not brought back to (-pi, pi]; nothing outside of its interval.
+pub fn family_member(
+    base_from_tip: &Frame,
+    solution: &[f64; VARIABLES],
+    family: &Family,
+    t: f64,
+) -> Option<[f64; VARIABLES]> {
+    let mut member = *solution;
+    member_of(&arm(&DESCRIBED), base_from_tip, family, &mut member, t).then_some(member)
+}
+
+";
+
 const API: &str = "\
 /// The solutions of one pose, in the order in which they were found.
 #[derive(Clone, Debug)]
@@ -246,7 +272,7 @@ pub fn solve(base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solution
     solve_with(&DESCRIBED, true, base_from_tip, free, out);
 }
 
-fn arm(chain: &Chain) -> Arm<'_> {
+FAMILIESfn arm(chain: &Chain) -> Arm<'_> {
     Arm { links: &chain.links, last_from_tip: &chain.last_from_tip, slides: &SLIDES, held: &HELD }
 }
 

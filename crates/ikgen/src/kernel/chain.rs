@@ -153,7 +153,7 @@ pub fn polish(
 }
 
 /// Distance to the pose, its six-vector (metres, radians), and the column of each variable.
-fn linearise(
+pub fn linearise(
     links: &[Link],
     last_from_tip: &Frame,
     base_from_tip: &Frame,

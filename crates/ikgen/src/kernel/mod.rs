@@ -12,6 +12,7 @@ pub mod chain;
 pub mod conic;
 pub mod eigen;
 pub mod elimination;
+pub mod family;
 pub mod math;
 pub mod null;
 pub mod octic;
@@ -24,11 +25,12 @@ pub mod waves;
 
 /// Source text of the kernel files, as generated files carry what they call of it; the square root comes in two kinds.
 #[cfg(feature = "generate")]
-pub(crate) const SOURCES: [(&str, &str); 12] = [
+pub(crate) const SOURCES: [(&str, &str); 13] = [
     ("math", include_str!("math.rs")),
     ("roots", include_str!("roots.rs")),
     ("chain", include_str!("chain.rs")),
     ("candidate", include_str!("candidate.rs")),
+    ("family", include_str!("family.rs")),
     ("conic", include_str!("conic.rs")),
     ("eigen", include_str!("eigen.rs")),
     ("waves", include_str!("waves.rs")),

@@ -132,7 +132,7 @@ impl Solver {
             let kept = preferences.offer(&ranges, solution, out);
             // Where axes have lined up another member of the family may do what the representative does not.
             if (!kept || preferences.near.is_some())
-                && self.is_singular(solution)
+                && self.is_singular(base_from_tip, solution)
                 && let Some(member) = self.member_within(base_from_tip, solution, &ranges, preferences)
             {
                 preferences.offer(&ranges, &member, out);

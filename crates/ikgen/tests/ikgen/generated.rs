@@ -7,11 +7,11 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use robotc_core::Seed;
-use robotc_core::ik::{IkSolutions, InverseKinematics};
+use robotc_core::ik::{FamilyPath, IkSolutions, InverseKinematics};
 use robotc_ikgen::backend::{CError, RustOptions};
 use robotc_ikgen::report::poses;
 use robotc_ikgen::run::Engine;
-use robotc_ikgen::{Compiled, Options, Solver, compile};
+use robotc_ikgen::{Compiled, GoalType, Options, Solver, compile};
 
 use crate::{arms, goals, golden};
 
@@ -30,13 +30,13 @@ fn every_back_end_gives_the_same_solutions() {
     let mut compiled: Vec<Compiled> =
         arms::all().iter().map(|c| compile(c, &Options::default()).unwrap()).collect();
     compiled.extend(goals::one_of_each_kind());
-    let (corpus, expected) = corpus(&compiled);
+    let (corpus, expected, with_families) = corpus(&compiled);
     std::fs::write(folder.path().join("corpus"), &corpus).unwrap();
 
     for (std, flavour) in [(true, "std"), (false, "core")] {
         rust_programs(folder.path(), &compiled, std, flavour);
         let found = answers(Command::new(folder.path().join(flavour)), folder.path());
-        same_bits(flavour, &corpus, &expected, &found);
+        same_bits(flavour, &corpus, &with_families, &found);
     }
     if !c_program(folder.path(), &compiled) {
         println!("skipped: no C compiler");
@@ -46,9 +46,11 @@ fn every_back_end_gives_the_same_solutions() {
     same_bits("C", &corpus, &expected, &found);
 }
 
-/// A line for each pose: the arm, the twelve numbers of the pose, the given values; and what the bytecode answers.
-fn corpus(compiled: &[Compiled]) -> (String, Vec<Answers>) {
-    let (mut text, mut expected) = (String::new(), Vec::new());
+/// A line for each pose: the arm, the twelve numbers of the pose, the given values; what the bytecode answers, and that followed by the
+/// families of each answer: direction and interval.
+fn corpus(compiled: &[Compiled]) -> (String, Vec<Answers>, Vec<Answers>) {
+    let (mut text, mut expected, mut with_families) = (String::new(), Vec::new(), Vec::new());
+    let mut families = [0, 0];
     for c in compiled {
         let (chain, solver) = (c.longer_chain(), c.solver());
         let reference = c.solver().with_engine(Engine::Interpreter);
@@ -71,10 +73,19 @@ fn corpus(compiled: &[Compiled]) -> (String, Vec<Answers>) {
                 let what = format!("{} at {} {vector:?}", chain.name, set.name);
                 let near = if set.regular { REGULAR } else { SINGULAR };
                 compare(&what, near, &solve(&reference), expected.last().unwrap());
+                let mut out = IkSolutions::new();
+                solver.solve_with_families(&pose, &free, &mut out);
+                let mut answers = expected.last().unwrap().clone();
+                for family in out.families().iter().filter(|family| family.solution < 16) {
+                    answers.push([&family.direction[..], &family.interval].concat());
+                    families[usize::from(family.path == FamilyPath::Curve)] += 1;
+                }
+                with_families.push(answers);
             }
         }
     }
-    (text, expected)
+    assert!(families[0] > 100 && families[1] > 100, "{families:?}");
+    (text, expected, with_families)
 }
 
 /// Runs a program on the corpus: for each pose a line with the number of answers, then one for each.
@@ -124,13 +135,23 @@ fn rust_programs(folder: &Path, compiled: &[Compiled], std: bool, flavour: &str)
         let file = folder.join(format!("{name}_{flavour}.rs"));
         std::fs::write(&file, source).unwrap();
         let _ = writeln!(modules, "#[path = {:?}]\npub mod {name};", file.display().to_string());
+        let families = if c.program.goal == GoalType::default() {
+            format!(
+                "                for v in found.as_slice() {{\n                    for family in {name}::families(&pose, v).as_slice() {{\n                        \
+                 rows.push([&family.direction[..v.len()], &family.interval].concat());\n                    }}\n                }}\n"
+            )
+        } else {
+            String::new()
+        };
         let _ = writeln!(
             arms,
             "            {name:?} => {{\n                let at = |i: usize| [x[i], x[i + 1], x[i + 2]];\n                \
              let pose = {name}::Frame {{ rotation: [at(0), at(3), at(6)], position: at(9) }};\n                \
              let mut found = {name}::Solutions::new();\n                \
              {name}::solve(&pose, x[12..].try_into().unwrap(), &mut found);\n                \
-             found.as_slice().iter().map(|v| v.to_vec()).collect::<Vec<_>>()\n            }}"
+             #[allow(unused_mut)]\n                \
+             let mut rows: Vec<Vec<f64>> = found.as_slice().iter().map(|v| v.to_vec()).collect();\n{families}                \
+             rows\n            }}"
         );
     }
     let library = format!("#![cfg_attr(not(test), no_std)]\n{modules}");
