@@ -54,7 +54,17 @@ pub struct Arm {
     pub home: Option<Vec<f64>>,
 }
 
-/// A gripper: parallel jaws or fingers.
+/// How a gripper holds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Hold {
+    /// Its fingers close until they touch.
+    #[default]
+    Close,
+    /// Its fingers are magnets or suction cups: they touch, and pull as hard as they push. It has no joints.
+    Attract,
+}
+
+/// A gripper: parallel jaws, fingers, magnets or suction cups.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gripper {
     /// Unique among grippers.
@@ -65,6 +75,8 @@ pub struct Gripper {
     pub palm_from_tool: Pose,
     /// Direction of approach in the tool frame.
     pub approach_in_tool: Unit<Vector3<f64>>,
+    /// How it holds.
+    pub hold: Hold,
     /// Degrees of freedom of the fingers.
     pub dofs: Vec<DofIdx>,
     /// For each of `dofs`: 1 or -1 when it closes by growing or shrinking, 0 when it only shapes the hand (spread).

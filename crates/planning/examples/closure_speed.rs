@@ -6,12 +6,19 @@ use std::time::Instant;
 
 use nalgebra::{Point3, Unit};
 use robotc_core::Seed;
+use robotc_core::robot::Hold;
 use robotc_planning::grasp::{Contact, ContactModel, closes, epsilon, volume, wrenches};
 
 #[expect(clippy::print_stdout, reason = "a program")]
 fn main() {
     const GRASPS: u64 = 40;
-    let model = ContactModel { friction: 0.5, cone_edges: 8, centre: Point3::origin(), length: 1.0 };
+    let model = ContactModel {
+        friction: 0.5,
+        cone_edges: 8,
+        centre: Point3::origin(),
+        length: 1.0,
+        hold: Hold::Close,
+    };
     println!("| contacts | closing | wrenches, us | yes or no, us | epsilon, us | volume, us |");
     println!("|---|---|---|---|---|---|");
     for count in [3, 4, 6, 8, 12, 16] {

@@ -9,7 +9,7 @@ use robotc_core::ik::{IkSolutions, InverseKinematics};
 use robotc_core::model::{
     DynamicLimits, Geometry, JointMotion, Link, Origin, RobotBuilder, RobotModel, Shape,
 };
-use robotc_core::robot::{Arm, Base, Gripper, Preshape, Robot};
+use robotc_core::robot::{Arm, Base, Gripper, Hold, Preshape, Robot};
 use robotc_core::world::World;
 use robotc_core::{Configuration, DofIdx, Kinematics, LinkIdx, Pose, TypedVec};
 
@@ -156,6 +156,7 @@ fn robot_of(model: RobotModel, rail: bool) -> Robot {
             palm: link("hand"),
             palm_from_tool: Pose::translation(HAND + TOOL - 0.04, 0.0, 0.0),
             approach_in_tool: Vector3::x_axis(),
+            hold: Hold::Close,
             dofs: vec![dof("finger")],
             closing: vec![-1.0],
             fingers: vec![link("left"), link("right")],

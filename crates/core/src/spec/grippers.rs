@@ -7,7 +7,7 @@ use super::lookup;
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::ids::{DofIdx, LinkIdx};
 use crate::model::RobotModel;
-use crate::robot::{Gripper, Preshape};
+use crate::robot::{Gripper, Hold, Preshape};
 
 /// A `[[gripper]]` table as a gripper, or `None` with findings.
 pub(super) fn read(table: &Table, model: &RobotModel, diagnostics: &mut Diagnostics) -> Option<Gripper> {
@@ -19,14 +19,22 @@ pub(super) fn read(table: &Table, model: &RobotModel, diagnostics: &mut Diagnost
     if let Some(palm) = palm {
         below_palm(model, palm, joints.as_deref().unwrap_or_default(), &fingers, diagnostics);
     }
-    let dofs: Vec<DofIdx> = joints.filter(|j| !j.is_empty())?.into_iter().map(|(dof, _)| dof).collect();
-    let closing = closing(table, model, &dofs, diagnostics);
-    let preshapes = preshapes(table, model, &dofs, closing.as_deref(), diagnostics);
+    let attracts = table.text("hold").is_some_and(|(hold, _)| hold == "attract");
+    let hold = if attracts { Hold::Attract } else { Hold::Close };
+    let dofs: Vec<DofIdx> =
+        joints.filter(|j| attracts || !j.is_empty())?.into_iter().map(|(dof, _)| dof).collect();
+    let closing = if attracts { Some(Vec::new()) } else { closing(table, model, &dofs, diagnostics) };
+    let preshapes = if attracts {
+        vec![Preshape { name: "open".to_owned(), values: Vec::new() }]
+    } else {
+        preshapes(table, model, &dofs, closing.as_deref(), diagnostics)
+    };
     let gripper = Gripper {
         name,
         palm: palm?,
         palm_from_tool: lookup::origin(table, "tool").pose(),
         approach_in_tool: approach?,
+        hold,
         closing: closing?,
         fingers: fingers.into_iter().map(|(link, _)| link).collect(),
         preshapes,

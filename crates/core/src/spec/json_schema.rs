@@ -70,6 +70,12 @@ fn rule(rule: &Rule) -> Value {
             let applies = json!({ "properties": { *key: { "const": value } }, "required": [key] });
             json!({ "if": applies, "then": { "required": [then] }, "else": { "properties": { *then: false } } })
         }
+        Rule::Unless { key, value, needed, allowed } => {
+            let applies = json!({ "properties": { *key: { "const": value } }, "required": [key] });
+            let none: Map<String, Value> =
+                needed.iter().chain(*allowed).map(|key| ((*key).to_owned(), json!(false))).collect();
+            json!({ "if": applies, "then": { "properties": none }, "else": { "required": needed } })
+        }
     }
 }
 

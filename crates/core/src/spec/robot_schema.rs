@@ -119,7 +119,7 @@ static ARM: TableSchema = TableSchema {
 };
 
 static GRIPPER: TableSchema = TableSchema {
-    doc: "A gripper: parallel jaws or fingers.",
+    doc: "A gripper: parallel jaws, fingers, or tips that attract: magnets, suction cups.",
     keys: &[
         Key::required("name", Kind::Text(Text::Name), "Name of the gripper."),
         Key::required(
@@ -134,8 +134,14 @@ static GRIPPER: TableSchema = TableSchema {
         ),
         Key::optional("approach", VECTOR, "Direction of approach, in the tool frame; any length.")
             .default("[0.0, 0.0, 1.0]"),
-        Key::required("joints", JOINTS, "The joints that move the fingers; joints that mimic are not named."),
-        Key::required(
+        Key::optional(
+            "hold",
+            Kind::Choice(&["close", "attract"]),
+            "`close`: the fingers close on what is grasped. `attract`: they are magnets or suction cups, which touch it.",
+        )
+        .default("\"close\""),
+        Key::optional("joints", JOINTS, "The joints that move the fingers; joints that mimic are not named."),
+        Key::optional(
             "closing",
             Kind::List(&Kind::Number(Range::between(-1.0, 1.0)), Length::AtLeast(1)),
             "For each of `joints`: 1 or -1 when it closes by growing or shrinking, 0 when it only shapes the hand.",
@@ -152,7 +158,12 @@ static GRIPPER: TableSchema = TableSchema {
              opens to.",
         ),
     ],
-    rules: &[],
+    rules: &[Rule::Unless {
+        key: "hold",
+        value: "attract",
+        needed: &["joints", "closing"],
+        allowed: &["preshape"],
+    }],
 };
 
 static PRESHAPE: TableSchema = TableSchema {

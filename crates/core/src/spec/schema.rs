@@ -231,6 +231,17 @@ pub enum Rule {
         /// What is required then.
         then: &'static str,
     },
+    /// Where `key` has the value `value`, other keys have no meaning, some of which are required elsewhere.
+    Unless {
+        /// The deciding key.
+        key: &'static str,
+        /// Its deciding value.
+        value: &'static str,
+        /// What is required otherwise.
+        needed: &'static [&'static str],
+        /// What may be there otherwise.
+        allowed: &'static [&'static str],
+    },
 }
 
 impl Key {

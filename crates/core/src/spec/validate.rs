@@ -44,7 +44,7 @@ impl Checker<'_> {
             }
         }
         for rule in schema.rules {
-            self.rule(table, place, schema, rule, path);
+            self.rule(table, place, schema, rule, &meant, path);
         }
     }
 
@@ -79,7 +79,16 @@ impl Checker<'_> {
         );
     }
 
-    fn rule(&mut self, table: &Table, place: Span, schema: &TableSchema, rule: &Rule, path: &str) {
+    /// `meant`: what unknown keys probably stand for.
+    fn rule(
+        &mut self,
+        table: &Table,
+        place: Span,
+        schema: &TableSchema,
+        rule: &Rule,
+        meant: &[&str],
+        path: &str,
+    ) {
         match *rule {
             Rule::ExactlyOne(keys) => self.exactly_one(table, place, keys, path),
             Rule::OneWith { keys, with } => match table.get(with) {
@@ -99,6 +108,19 @@ impl Checker<'_> {
                         self.without_effect(entry, format!("with `{key} = \"{value}\"`"))
                     }
                     _ => {}
+                }
+            }
+            Rule::Unless { key, value, needed, allowed } => {
+                if table.get(key).and_then(Node::text) == Some(value) {
+                    let barred = needed.iter().chain(allowed);
+                    for entry in barred.filter_map(|barred| table.entry(barred)) {
+                        self.without_effect(entry, format!("without `{key} = \"{value}\"`"));
+                    }
+                } else {
+                    let absent = |name: &&str| table.get(name).is_none() && !meant.contains(name);
+                    for key in needed.iter().copied().filter(absent).filter_map(|name| schema.key(name)) {
+                        self.missing(key, place, path);
+                    }
                 }
             }
         }

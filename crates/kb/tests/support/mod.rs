@@ -7,7 +7,7 @@ use robotc_core::ids::{Idx, LinkIdx};
 use robotc_core::model::{
     Configuration, DynamicLimits, Geometry, Inertial, JointMotion, Origin, RobotBuilder, Shape,
 };
-use robotc_core::robot::{Base, Camera, Preshape};
+use robotc_core::robot::{Base, Camera, Hold, Preshape};
 use robotc_core::spec::{ParameterValue, RobotSpec, TaskSpec};
 use robotc_core::task::{Article, Destination, Goal, Object, Obstacle};
 use robotc_core::{Arm, Gripper, Pose, Robot, Task};
@@ -230,6 +230,7 @@ impl Spec {
                 palm: LinkIdx::new(6),
                 palm_from_tool: self.tool.pose(),
                 approach_in_tool: Vector3::z_axis(),
+                hold: Hold::Close,
                 dofs: vec![dof(6)],
                 closing: vec![-1.0],
                 fingers: vec![LinkIdx::new(7), LinkIdx::new(8)],

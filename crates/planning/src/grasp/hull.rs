@@ -355,6 +355,8 @@ mod tests {
     use nalgebra::{Point3, Unit, Vector3};
     use robotc_core::Seed;
 
+    use robotc_core::robot::Hold;
+
     use super::super::{Contact, ContactModel, closes, wrenches};
     use super::*;
 
@@ -364,7 +366,7 @@ mod tests {
     }
 
     fn model(friction: f64) -> ContactModel {
-        ContactModel { friction, cone_edges: 8, centre: Point3::origin(), length: 1.0 }
+        ContactModel { friction, cone_edges: 8, centre: Point3::origin(), length: 1.0, hold: Hold::Close }
     }
 
     /// Two flat pads on opposite faces of a cube.

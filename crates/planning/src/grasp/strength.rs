@@ -39,6 +39,8 @@ pub fn strength(wrenches: &[Vector6<f64>]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use robotc_core::robot::Hold;
+
     use super::super::{Contact, ContactModel, wrenches};
     use super::*;
     use nalgebra::{Point3, Unit, Vector3};
@@ -54,7 +56,13 @@ mod tests {
                 });
             }
         }
-        let model = ContactModel { friction, cone_edges: 8, centre: Point3::origin(), length: 0.05 };
+        let model = ContactModel {
+            friction,
+            cone_edges: 8,
+            centre: Point3::origin(),
+            length: 0.05,
+            hold: Hold::Close,
+        };
         wrenches(&contacts, &model)
     }
 

@@ -6,6 +6,8 @@
 
 use nalgebra::{Point3, Unit, Vector3, Vector6};
 
+use robotc_core::robot::Hold;
+
 use super::Contact;
 
 /// What a contact can do.
@@ -19,10 +21,12 @@ pub struct ContactModel {
     pub centre: Point3<f64>,
     /// Torques are divided by this length, metres: the largest distance of the object's surface from `centre`.
     pub length: f64,
+    /// Where the hand attracts, a contact pulls as hard as it presses.
+    pub hold: Hold,
 }
 
 /// The wrenches of all pyramid edges, contact by contact: unit normal force plus friction (x, y, z), then its scaled torque;
-/// in the object frame.
+/// in the object frame. Where the hand attracts, that of the unit pull follows those of each contact's edges.
 pub fn wrenches(contacts: &[Contact], model: &ContactModel) -> Vec<Vector6<f64>> {
     let step = std::f64::consts::TAU / model.cone_edges as f64;
     let edges: Vec<(f64, f64)> = (0..model.cone_edges)
@@ -35,6 +39,11 @@ pub fn wrenches(contacts: &[Contact], model: &ContactModel) -> Vec<Vector6<f64>>
         let arm = (contact.point_in_object - model.centre) / model.length;
         for (along_u, along_v) in &edges {
             let force = contact.normal_in_object.into_inner() + u * *along_u + v * *along_v;
+            let torque = arm.cross(&force);
+            out.push(Vector6::new(force.x, force.y, force.z, torque.x, torque.y, torque.z));
+        }
+        if model.hold == Hold::Attract {
+            let force = -contact.normal_in_object.into_inner();
             let torque = arm.cross(&force);
             out.push(Vector6::new(force.x, force.y, force.z, torque.x, torque.y, torque.z));
         }

@@ -3,6 +3,7 @@
 use nalgebra::Point3;
 use robotc_core::geom::{ConvexParts, MeshIndex};
 use robotc_core::model::TriMesh;
+use robotc_core::robot::Hold;
 use robotc_core::{Pose, Seed};
 use robotc_planning::grasp::{
     Contact, ContactModel, Grasp, Steadiness, bears, closes, epsilon, strength, volume, wrenches,
@@ -13,10 +14,16 @@ use super::contacts::{PatchOptions, patch};
 use super::coverage::{DIRECTIONS, direction_range};
 use super::steadiness::{Regrasp, SteadinessOptions, deviation, disturbances};
 use super::stored::{Stored, StoredPose};
+use super::tips::{TipOptions, Tips};
 use crate::kind::DecodeError;
 use crate::kinds::grip::hand::Hand;
-use crate::kinds::grip::strategy::{Approach, ClosedHand, Miss, Start, close_fingers, close_on, is_clear};
+use crate::kinds::grip::strategy::{
+    Approach, ClosedHand, Miss, Start, arrive, close_fingers, close_on, is_clear, touch_with_tips,
+};
 use crate::kinds::grip::surface::{ApproachOptions, Surface, approaches};
+
+/// Points of the surface across the narrowest tip of a hand that attracts.
+const POINTS_ACROSS_TIPS: f64 = 16.0;
 
 /// How a set is made.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +44,8 @@ pub(super) struct GenerateOptions {
     pub(super) volumes: bool,
     /// How repeatability is tested.
     pub(super) steadiness: SteadinessOptions,
+    /// What contacts of a hand that attracts have to be like.
+    pub(super) tips: TipOptions,
 }
 
 /// What became of the approaches.
@@ -64,6 +73,8 @@ pub(super) struct Generator<'a> {
     contact: ContactModel,
     options: &'a GenerateOptions,
     disturbances: Vec<Pose>,
+    /// Of a hand that attracts.
+    tips: Option<Tips>,
     /// The approaches to try.
     pub(super) approaches: Vec<Approach>,
 }
@@ -97,28 +108,36 @@ impl<'a> Generator<'a> {
         options: &'a GenerateOptions,
         seed: Seed,
     ) -> Option<Self> {
-        let surface = Surface::new(mesh, options.surface_spacing);
+        let attracts = hand.gripper().hold == Hold::Attract;
+        let tips = attracts.then(|| Tips::of(hand, options.patch.depth, options.tips));
+        // Contacts are points of the surface: there have to be enough of them across a tip to see how wide it touches.
+        let of_tips = tips.as_ref().map_or(f64::INFINITY, |tips| tips.narrowest() / POINTS_ACROSS_TIPS);
+        let surface = Surface::new(mesh, options.surface_spacing.min(of_tips));
         let farthest = surface.points().iter().map(|s| (s.point - centre_of_mass).norm()).reduce(f64::max)?;
         let contact = ContactModel {
             friction: options.friction,
             cone_edges: options.cone_edges,
             centre: centre_of_mass,
             length: farthest.max(f64::MIN_POSITIVE),
+            hold: hand.gripper().hold,
         };
         let disturbances = disturbances(&options.steadiness, &centre_of_mass, contact.length, seed);
         let approaches = approaches(mesh, &MeshIndex::new(mesh), &options.approaches, seed);
-        Some(Self { hand, object, surface, contact, options, disturbances, approaches })
+        Some(Self { hand, object, surface, contact, options, disturbances, tips, approaches })
     }
 
     /// Runs the grasp strategy along one approach and judges its contacts.
     pub(super) fn attempt(&self, approach: &Approach) -> Trial {
         let gripper = self.hand.gripper();
         let start = approach.start(&gripper.approach_in_tool);
-        let closed = match close_on(self.hand, self.object, &start) {
+        let closed = match self.hold(&start) {
             Ok(closed) => closed,
             Err(miss) => return Trial::Miss(miss),
         };
-        let contacts = self.contacts_of(&closed);
+        let contacts = self.contacts_of(&closed.object_from_links);
+        if !self.lies_flat(&contacts, &closed) {
+            return Trial::NoClosure;
+        }
         let wrenches = wrenches(&contacts, &self.contact);
         if !closes(&wrenches) {
             return Trial::NoClosure;
@@ -190,16 +209,18 @@ impl<'a> Generator<'a> {
         for object_from_disturbed in &self.disturbances {
             let disturbed_from_object = object_from_disturbed.inverse();
             let planned = disturbed_from_object * grasp.object_from_tool;
-            let clear = is_clear(self.hand, self.object, &planned, open);
-            let closed = if clear {
+            // Tips come in until they touch, wherever that is.
+            let clear = self.tips.is_some() || is_clear(self.hand, self.object, &planned, open);
+            let closed = if clear && self.tips.is_none() {
                 close_fingers(self.hand, self.object, planned, open)
             } else {
                 let object_from_tool = disturbed_from_object * start.object_from_tool;
-                close_on(self.hand, self.object, &Start { object_from_tool, ..*start })
+                self.hold(&Start { object_from_tool, ..*start })
             };
             let Ok(closed) = closed else { continue };
-            let holds = || bears(&wrenches(&self.contacts_of(&closed), &self.contact), 0.5 * grasp.score);
-            held += usize::from(clear && holds());
+            let contacts = self.contacts_of(&closed.object_from_links);
+            let holds = || bears(&wrenches(&contacts, &self.contact), 0.5 * grasp.score);
+            held += usize::from(clear && self.lies_flat(&contacts, &closed) && holds());
             let tool = Point3::from((object_from_disturbed * closed.object_from_tool).translation.vector);
             regrasps.push(Regrasp { tool, closed: closed.closed });
         }
@@ -210,10 +231,26 @@ impl<'a> Generator<'a> {
         (enough && slip * deviation <= disturbance).then_some(Steadiness { deviation, held })
     }
 
+    /// Runs the strategy of the hand.
+    fn hold(&self, start: &Start) -> Result<ClosedHand, Miss> {
+        let Some(tips) = &self.tips else { return close_on(self.hand, self.object, start) };
+        // What is attracted turns until it lies against the tips.
+        let (object_from_tool, object_from_links) = arrive(self.hand, self.object, start)?;
+        let touched = self.contacts_of(&object_from_links);
+        let turned = tips.turned(&touched, &object_from_tool, &self.hand.gripper().approach_in_tool);
+        let start = Start { object_from_tool: turned, ..*start };
+        touch_with_tips(self.hand, self.object, &start, self.options.patch.depth)
+    }
+
+    /// Whether tips that attract lie flat; of no matter to fingers.
+    fn lies_flat(&self, contacts: &[Contact], closed: &ClosedHand) -> bool {
+        self.tips.as_ref().is_none_or(|tips| tips.lie_flat(contacts, &closed.object_from_tool))
+    }
+
     /// Contact patches of all fingers of a closed hand.
-    fn contacts_of(&self, closed: &ClosedHand) -> Vec<Contact> {
+    fn contacts_of(&self, object_from_links: &[Pose]) -> Vec<Contact> {
         let mut contacts = Vec::new();
-        for (link, object_from_link) in self.hand.links.iter().zip(&closed.object_from_links) {
+        for (link, object_from_link) in self.hand.links.iter().zip(object_from_links) {
             if link.is_finger {
                 contacts.extend(patch(link.parts, object_from_link, &self.surface, &self.options.patch));
             }
@@ -285,6 +322,7 @@ mod tests {
             least_epsilon: 1e-3,
             volumes: true,
             steadiness: SteadinessOptions { disturbance: 0.005, repeats: 8, slip: 0.7 },
+            tips: TipOptions { footprint: 0.7, agreement: 0.3 },
         }
     }
 

@@ -8,6 +8,8 @@ mod generate;
 #[cfg(feature = "build")]
 mod steadiness;
 mod stored;
+#[cfg(feature = "build")]
+mod tips;
 
 #[cfg(feature = "shake")]
 pub(crate) use build::centre_of_volume;
@@ -29,7 +31,8 @@ use crate::record::Parts;
 ///
 /// Rays find points of the object's surface; the hand approaches each from several directions, with several turns,
 /// preshapes and standoffs, closes, and is kept when its contact patches resist every wrench (thesis section 4.2) and it is
-/// repeatable (algorithm 4.1). The best of all directions of approach are kept, ranked by the force that
+/// repeatable (algorithm 4.1). Magnets and suction cups touch instead, with contacts as wide as their tips whose normals agree
+/// (figure 4.16). The best of all directions of approach are kept, ranked by the force that
 /// they bear at the centre of mass times the share of disturbed grasps that bear half of it.
 pub struct GraspSet;
 
@@ -83,6 +86,10 @@ crate::parameters! {
         repeats: u32 [""] in 0..=10000 = 16;
         /// A grasp is fragile when this much of the deviation of the hand exceeds the disturbance.
         slip: f64 [""] in 0.0..=10.0 = 0.7;
+        /// Of tips that attract: smallest width of the contacts as a share of that of the tips, in every direction.
+        footprint: f64 [""] in 0.0..=1.0 = 0.7;
+        /// Of tips that attract: largest angle of a contact's normal to their mean.
+        agreement: f64 ["rad"] in 0.0..=1.5 = 0.3;
         /// Whether the volume of what a grasp resists is computed too; it takes longer than all else.
         volumes: bool = false;
         /// Most grasps that are kept, best first.
@@ -166,12 +173,13 @@ impl Kind for GraspSet {
 #[cfg(feature = "build")]
 mod build {
     use robotc_core::geom::{self, MeshIndex};
-    use robotc_core::robot::Gripper;
+    use robotc_core::robot::{Gripper, Hold};
     use robotc_planning::grasp::{ContactModel, closes, tangents, wrenches};
 
     use super::contacts::PatchOptions;
     use super::generate::{Candidate, GenerateOptions, Generator};
     use super::steadiness::SteadinessOptions;
+    use super::tips::TipOptions;
     use nalgebra::{Point3, Vector3};
 
     use super::*;
@@ -195,6 +203,11 @@ mod build {
             let angle = std::f64::consts::TAU * f64::from(k) / f64::from(p.rays.max(2) - 1);
             (u * libm::cos(angle) + v * libm::sin(angle)) * p.ray_radius
         };
+        // A finger stops at the parts that cover the object; a tip has to get to its surface.
+        let gap = match gripper.hold {
+            Hold::Close => p.cover_gap,
+            Hold::Attract => p.cover_gap.min(p.patch_depth),
+        };
         let rays = std::iter::once(Vector3::zeros()).chain((0..p.rays - 1).map(beside)).collect();
         GenerateOptions {
             approaches: ApproachOptions {
@@ -202,12 +215,15 @@ mod build {
                 rolls: p.rolls as usize,
                 directions: p.directions as usize,
                 cone: p.cone,
-                standoffs: (0..p.standoffs).map(standoff).collect(),
+                standoffs: match gripper.hold {
+                    Hold::Close => (0..p.standoffs).map(standoff).collect(),
+                    Hold::Attract => vec![0.0],
+                },
                 rays,
                 preshapes: gripper.preshapes.len(),
                 most: p.approaches as usize,
             },
-            patch: PatchOptions { depth: p.patch_depth, gap: p.cover_gap, points: p.patch_points as usize },
+            patch: PatchOptions { depth: p.patch_depth, gap, points: p.patch_points as usize },
             surface_spacing: (2.0 * p.patch_depth).min(p.spacing),
             friction: p.friction,
             cone_edges: p.cone_edges as usize,
@@ -218,6 +234,7 @@ mod build {
                 repeats: p.repeats as usize,
                 slip: p.slip,
             },
+            tips: TipOptions { footprint: p.footprint, agreement: p.agreement },
         }
     }
 
@@ -270,6 +287,7 @@ mod build {
                 cone_edges: parameters.cone_edges as usize,
                 centre,
                 length: 1.0,
+                hold: hand.gripper().hold,
             };
             for (i, grasp) in artefact.iter().enumerate() {
                 let gripper = hand.gripper();

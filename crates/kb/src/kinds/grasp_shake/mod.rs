@@ -3,6 +3,7 @@
 #[cfg(feature = "shake")]
 mod rig;
 
+use robotc_core::robot::Hold;
 use robotc_planning::grasp::Grasp;
 use serde::{Deserialize, Serialize};
 
@@ -118,7 +119,9 @@ impl Kind for GraspShake {
 
     fn subjects(project: &Project) -> Vec<OfGripperAndObject> {
         let asked = project.given().get(Self::NAME, "grasps").is_some();
-        if asked { OfGripperAndObject::all(project) } else { Vec::new() }
+        // What attracts holds by a force that the simulation does not know.
+        let closes = |s: &OfGripperAndObject| project.robot().grippers[s.gripper].hold == Hold::Close;
+        if asked { OfGripperAndObject::all(project).into_iter().filter(closes).collect() } else { Vec::new() }
     }
 
     fn inputs(planner: &mut Planner<'_>, subject: &OfGripperAndObject) -> Result<Inputs, PlanError> {

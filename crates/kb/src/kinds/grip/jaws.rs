@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use robotc_core::geom::{ConvexParts, box_part};
 use robotc_core::ids::Idx;
 use robotc_core::model::{DynamicLimits, JointMotion, Kinematics, Origin, RobotBuilder};
-use robotc_core::robot::{Gripper, Preshape};
+use robotc_core::robot::{Gripper, Hold, Preshape};
 use robotc_core::{DofIdx, LinkIdx, Pose};
 
 /// A palm with two jaws that open to 80 mm; the second follows the first.
@@ -36,6 +36,7 @@ pub(crate) fn jaws() -> (Kinematics, Gripper, Vec<(LinkIdx, ConvexParts)>) {
         palm: LinkIdx::new(0),
         palm_from_tool: Pose::translation(0.0, 0.0, 0.09),
         approach_in_tool: Vector3::z_axis(),
+        hold: Hold::Close,
         dofs: vec![DofIdx::new(0)],
         closing: vec![-1.0],
         fingers: vec![LinkIdx::new(1), LinkIdx::new(2)],

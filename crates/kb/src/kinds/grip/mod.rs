@@ -14,7 +14,7 @@ pub(crate) mod surface;
 use nalgebra::{Point3, Vector3};
 use robotc_core::ids::{Idx, LinkIdx};
 use robotc_core::model::Origin;
-use robotc_core::robot::Gripper;
+use robotc_core::robot::{Gripper, Hold};
 
 use crate::graph::{Dep, PlanError, Planner};
 use crate::kinds::ConvexParts;
@@ -59,6 +59,10 @@ impl GripperInputs {
         let fingers: Vec<usize> = gripper.fingers.iter().map(|l| l.index()).collect();
         let dofs: Vec<usize> = gripper.dofs.iter().map(|d| d.index()).collect();
         parts.add("fingers", "", &(fingers, dofs, gripper.closing.clone()));
+        // Only what attracts says so: keys of hands that close are as they were before there were others.
+        if gripper.hold == Hold::Attract {
+            parts.add("hold", "", &1u32);
+        }
         for preshape in &gripper.preshapes {
             parts.add("preshape", &preshape.name, &preshape.values);
         }

@@ -1,4 +1,5 @@
-//! The grasp strategy: approach until the hand touches, stand back, close the fingers until they touch.
+//! The grasp strategy: approach until the hand touches, stand back, close the fingers until they touch. Tips that attract
+//! approach and touch.
 //!
 //! Thesis section 4.2 (and 3.2 for its use in planning). Everything is kinematic: the object does not move, but a hand
 //! whose fingers share one drive is centred on the object, as parallel jaws do when the first jaw touches.
@@ -53,7 +54,7 @@ pub(crate) struct ClosedHand {
 pub(crate) enum Miss {
     /// The hand never came near the object.
     NoTouch,
-    /// Fewer than two fingers touch when closed.
+    /// Fewer than two fingers touch when closed, or not all tips that attract.
     FewFingers,
     /// Something other than a finger touches the closed hand's object.
     PalmTouches,
@@ -83,15 +84,44 @@ impl Approach {
 
 /// Runs the strategy.
 pub(crate) fn close_on(hand: &Hand, object: &ConvexParts, start: &Start) -> Result<ClosedHand, Miss> {
+    let (object_from_tool, _) = arrive(hand, object, start)?;
+    close_fingers(hand, object, object_from_tool, &hand.gripper().preshapes[start.preshape].values)
+}
+
+/// Where the tool and [`Hand::links`] are when the hand, coming in with its preshape, has touched and stood back.
+pub(crate) fn arrive(hand: &Hand, object: &ConvexParts, start: &Start) -> Result<(Pose, Vec<Pose>), Miss> {
     let gripper = hand.gripper();
     let open = &gripper.preshapes[start.preshape].values;
     let object_from_palm = start.object_from_tool * gripper.palm_from_tool.inverse();
-    let object_from_links: Vec<Pose> =
+    let mut object_from_links: Vec<Pose> =
         hand.palm_from_links(open).iter().map(|palm_from_link| object_from_palm * palm_from_link).collect();
     let direction = start.object_from_tool.rotation * gripper.approach_in_tool;
     let travel = first_touch(hand, &object_from_links, &direction, object).ok_or(Miss::NoTouch)?;
     let back = Translation3::from(direction.into_inner() * (travel - start.standoff));
-    close_fingers(hand, object, back * start.object_from_tool, open)
+    object_from_links.iter_mut().for_each(|object_from_link| *object_from_link = back * *object_from_link);
+    Ok((back * start.object_from_tool, object_from_links))
+}
+
+/// Brings tips that attract up to the object: nothing moves but the hand as a whole. Every finger has to come within `give` metres,
+/// as far as it and the object yield when they are pulled together.
+pub(crate) fn touch_with_tips(
+    hand: &Hand,
+    object: &ConvexParts,
+    start: &Start,
+    give: f64,
+) -> Result<ClosedHand, Miss> {
+    let (object_from_tool, object_from_links) = arrive(hand, object, start)?;
+    for (link, object_from_link) in hand.links.iter().zip(&object_from_links) {
+        let near = |gap: f64| any_within(object, &Pose::identity(), link.parts, object_from_link, gap);
+        if link.is_finger && !near(give) {
+            return Err(Miss::FewFingers);
+        }
+        if !link.is_finger && near(TOUCH) {
+            return Err(Miss::PalmTouches);
+        }
+    }
+    let closed = hand.gripper().preshapes[start.preshape].values.clone();
+    Ok(ClosedHand { object_from_tool, closed, object_from_links })
 }
 
 /// Whether a hand with these finger values stands clear of the object.
