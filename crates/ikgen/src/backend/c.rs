@@ -12,7 +12,7 @@ use crate::run::TrueChain;
 const KERNEL: [&str; 2] = [include_str!("kernel.c"), include_str!("kernel_general.c")];
 
 /// What each section calls, itself in the order of the file.
-const SECTIONS: [(&str, &[&str]); 29] = [
+const SECTIONS: [(&str, &[&str]); 30] = [
     ("sqrt", &[]),
     ("abs", &[]),
     ("finite", &[]),
@@ -35,11 +35,12 @@ const SECTIONS: [(&str, &[&str]); 29] = [
     ("eigen", &["sqrt", "abs"]),
     ("atan2", &["abs", "finite"]),
     ("waves", &["eigen", "atan2", "cos_sin"]),
-    ("octic", &["waves", "roots"]),
+    ("bends", &["waves"]),
+    ("octic", &["bends", "roots"]),
     ("vector", &["sqrt", "finite", "cos_sin"]),
     ("elimination", &["vector", "waves"]),
     ("null", &["elimination", "circle"]),
-    ("six", &["null"]),
+    ("six", &["null", "bends"]),
     ("chain", &["sqrt", "abs", "finite", "cos_sin"]),
     ("candidate", &["chain", "angle_of"]),
 ];

@@ -287,7 +287,7 @@ static int ik_roots_of_waves(const ik_waves *waves, int squared, ik_root *found)
     return count;
 }
 
-/* == octic == */
+/* == bends == */
 /* Value and the first two derivatives at a turn. */
 static void ik_bends(const ik_waves *waves, const double turn[2], double out[3])
 {
@@ -307,6 +307,7 @@ static void ik_bends(const ik_waves *waves, const double turn[2], double out[3])
     }
 }
 
+/* == octic == */
 /* The root near an angle, or the extremum where two roots fall together, as cosine and sine; returns the value there. Newton steps. */
 static double ik_improved(const ik_waves *waves, double angle, int twice, double turn[2])
 {
@@ -1083,11 +1084,23 @@ static ik_motion ik_nudged(const ik_motion *goal, double size)
 static void ik_add_candidate(const ik_loop *loop, ik_turn turn, const ik_turn pair[2], ik_candidates *found)
 {
     ik_turn middle[3], turns[6];
-    int i;
+    int i, k;
     middle[0] = turn;
     middle[1] = pair[loop->swapped ? 1 : 0];
     middle[2] = pair[loop->swapped ? 0 : 1];
     if (found->count >= IK_CANDIDATES || !ik_close(loop, middle, turns)) return;
+    /* Those that are nearer to each other in all cosines and sines are one, found in two orders. */
+    for (k = 0; k < found->count; k++) {
+        double gap = 0.0, one;
+        for (i = 0; i < 6; i++) {
+            const ik_turn *other = &found->turns[k][loop->joints[i]];
+            one = ik_abs(other->c - turns[i].c);
+            if (one > gap) gap = one;
+            one = ik_abs(other->s - turns[i].s);
+            if (one > gap) gap = one;
+        }
+        if (!(gap > 1e-9)) return;
+    }
     for (i = 0; i < 6; i++) found->turns[found->count][loop->joints[i]] = turns[i];
     found->count++;
 }
@@ -1096,13 +1109,34 @@ static void ik_add_candidate(const ik_loop *loop, ik_turn turn, const ik_turn pa
 #define IK_NEARLY_REAL 1e-3
 
 /* Where the polynomial is smaller than this part of the largest sample, rounding decides where its roots are and which are real. */
-#define IK_FLAT 1e-12
+#define IK_FLAT 1e-11
 
-/* How high the polynomial is about a root. */
-static double ik_height(const ik_waves *waves, double angle)
+/* The extremum near an angle, with the value and the second derivative there. */
+static void ik_extremum(const ik_waves *waves, double angle, double out[3])
 {
-    double slope, value = ik_waves_at(waves, angle, &slope);
-    return ik_abs(value) + IK_NEARLY_REAL * ik_abs(slope);
+    double turn[2], bends[3], step;
+    int i;
+    ik_cos_sin(angle, turn);
+    ik_bends(waves, turn, bends);
+    for (i = 0; i < 4; i++) {
+        step = -bends[1] / bends[2];
+        if (!(ik_abs(step) < 1e-2) || ik_abs(step) < 1e-12) break;
+        angle += step;
+        ik_cos_sin(angle, turn);
+        ik_bends(waves, turn, bends);
+    }
+    out[0] = angle;
+    out[1] = bends[0];
+    out[2] = bends[2];
+}
+
+/* How high the polynomial rises about a root, to second order. */
+static double ik_rise(const ik_waves *waves, double angle)
+{
+    double turn[2], bends[3];
+    ik_cos_sin(angle, turn);
+    ik_bends(waves, turn, bends);
+    return ik_abs(bends[0]) + IK_NEARLY_REAL * (ik_abs(bends[1]) + 0.5 * IK_NEARLY_REAL * ik_abs(bends[2]));
 }
 
 /* Adds the candidates that show in one view; says whether their roots lie apart. `flat` says whether the polynomial is all but zero
@@ -1113,14 +1147,15 @@ static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int 
     ik_waves waves = ik_waves_in_view(view, six, degree);
     ik_root roots[IK_SIZE];
     int count = ik_roots_of_waves(&waves, squared, roots), multiplicity = squared ? 2 : 1, apart = count * multiplicity == 2 * degree;
-    int done[IK_SIZE] = { 0 }, near[IK_SIZE], together, pairs_found, i, j, k;
-    double least = IK_FLAT * waves.largest, flattest = 0.0, width = 1e-3, height, gap, square, shift;
+    int done[IK_SIZE] = { 0 }, near[IK_SIZE], together, pairs_found, fold, merged, many, i, j, k;
+    double least = IK_FLAT * waves.largest, flattest = 0.0, width = 1e-3, height, gap, square, shift, spread, mean, side;
+    double starts[IK_SIZE], extremum[3];
     ik_turn turn, pairs[6][2];
     *flat = 0;
     for (i = 0; i < count; i++) {
         double angle = roots[i].angle, imaginary = roots[i].imaginary;
         if (ik_abs(imaginary) < 1.0 && !(squared && ik_abs(imaginary) < IK_NEARLY_REAL)) {
-            height = ik_height(&waves, angle);
+            height = ik_rise(&waves, angle);
             if (height < least) {
                 *flat = 1;
                 flattest = angle;
@@ -1128,36 +1163,59 @@ static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int 
             }
         }
         if (done[i] || ik_abs(imaginary) > IK_NEARLY_REAL + 5.0 * ik_sqrt(slack)) continue;
-        /* Roots that nearly fall together: their mean is more exact than each of them. */
         together = 0;
-        shift = 0.0;
+        shift = spread = 0.0;
         for (j = 0; j < count; j++) {
             turn = ik_turn_by(roots[j].angle - angle);
-            near[j] = turn.c > 0.0 && ik_abs(turn.s) + ik_abs(roots[j].imaginary - imaginary) < 3e-3;
+            gap = ik_abs(turn.s) + ik_abs(roots[j].imaginary - imaginary);
+            near[j] = turn.c > 0.0 && gap < 3e-3;
             if (near[j]) {
+                if (gap > spread) spread = gap;
                 together += multiplicity;
                 shift += turn.s;
             }
         }
-        if (together > 1) {
-            turn = ik_turn_in_view(view, angle + shift * (double)multiplicity / (double)together, &square);
+        /* Roots that nearly fall together: their mean is more exact than each of them. */
+        mean = angle + shift * (double)multiplicity / (double)together;
+        ik_extremum(&waves, mean, extremum);
+        fold = together == 2 && !squared && slack == 0.0;
+        many = 0;
+        if (together == 1 || (fold && ik_abs(extremum[1]) > IK_FLAT * waves.largest)) {
+            /* A root that is clear of others. Where they are not real the polynomial stays clear of zero. */
+            if (imaginary == 0.0 || together == 1) {
+                starts[0] = ik_refined(six, &waves, view, angle);
+                many = 1;
+            }
+        } else {
+            for (j = 0; j < count; j++) done[j] |= near[j];
+            merged = spread < 1e-5 || squared;
+            turn = ik_turn_in_view(view, mean, &square);
             k = ik_several(six, turn, pairs, &pairs_found);
             for (j = 0; j < pairs_found; j++) ik_add_candidate(loop, turn, pairs[j], found);
-            if (k == together) {
-                for (j = 0; j < count; j++) done[j] |= near[j];
-                continue;
+            apart &= merged && (k == together || fold);
+            if (k == together && merged) continue;
+            if (fold) {
+                /* Seen from outside of the two each leads to its own. */
+                side = ik_sqrt(2.0 * (ik_abs(extremum[1]) + 1e-14 * waves.largest) / ik_abs(extremum[2]));
+                starts[0] = extremum[0] - side;
+                starts[1] = extremum[0] + side;
+                many = 2;
+            } else {
+                for (j = 0; j < count; j++) if (near[j]) starts[many++] = roots[j].angle;
             }
-            apart = 0;
         }
-        turn = ik_turn_in_view(view, ik_refined(six, &waves, view, angle), &square);
-        if (ik_single(six, turn, pairs[0])) ik_add_candidate(loop, turn, pairs[0], found);
+        for (j = 0; j < many; j++) {
+            turn = ik_turn_in_view(view, starts[j], &square);
+            if (ik_single(six, turn, pairs[0])) ik_add_candidate(loop, turn, pairs[0], found);
+            else apart = 0;
+        }
     }
     if (*flat) {
         /* As wide as the roots reach that rounding has moved. */
         for (i = 0; i < count; i++) {
             turn = ik_turn_by(roots[i].angle - flattest);
             gap = ik_abs(turn.s) + ik_abs(roots[i].imaginary);
-            if (turn.c > 0.0 && gap < 0.5 && gap > width && ik_height(&waves, roots[i].angle) < IK_FLAT * waves.largest) width = gap;
+            if (turn.c > 0.0 && gap < 0.5 && gap > width && ik_rise(&waves, roots[i].angle) < IK_FLAT * waves.largest) width = gap;
         }
         turn = ik_turn_in_view(view, flattest, &square);
         view->centre = turn;
@@ -1178,8 +1236,7 @@ static int ik_solve_order(const ik_line lines[6], const ik_motion *goal, const d
     view.width = 1.0;
     for (round = 0; round < 4; round++) {
         all &= ik_look(&loop, &six, (int)order[1], order[2] > 0.0, &view, slack, found, &flat);
-        /* Real roots come in pairs: an odd number of them lacks one. */
-        if (!flat) return all && found->count > before && (found->count - before) % 2 == 0;
+        if (!flat) return all && found->count > before;
     }
     return 0;
 }

@@ -28,6 +28,9 @@ pub type Turns = [[f64; 2]; 6];
 /// Most candidates of one pose.
 pub const MOST: usize = 48;
 
+/// Candidates that are nearer to each other in all cosines and sines are one, found in two orders.
+const EQUAL: f64 = 1e-9;
+
 /// Candidate turns of six joints.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidates {
@@ -51,8 +54,16 @@ impl Candidates {
         self.items[i]
     }
 
+    /// Adds one, if it is new and there is room.
     fn push(&mut self, turns: Turns) {
-        if self.len < MOST {
+        let new = self.items[..self.len].iter().all(|other| {
+            let mut gap = 0.0f64;
+            for (a, b) in other.iter().flatten().zip(turns.iter().flatten()) {
+                gap = gap.max((a - b).abs());
+            }
+            gap > EQUAL
+        });
+        if new && self.len < MOST {
             self.items[self.len] = turns;
             self.len += 1;
         }
@@ -75,13 +86,20 @@ pub struct Order {
 const NEARLY_REAL: f64 = 1e-3;
 
 /// Where the polynomial is smaller than this part of the largest sample, rounding decides where its roots are and which are real.
-const FLAT: f64 = 1e-12;
+const FLAT: f64 = 1e-11;
+
+/// Rounding of the polynomial, as part of the largest sample, where it is small.
+const ROUNDING: f64 = 1e-14;
 
 /// Most views of the polynomial of one order: the whole circle, and places where it is flat.
 const MOST_VIEWS: usize = 4;
 
-/// Roots that are nearer to each other ask for another order, in which the solutions may be farther apart.
+/// Roots that are nearer to each other may be one.
 const APART: f64 = 3e-3;
+
+/// As far rounding parts a double root. Roots that are farther apart, but not clearly, ask for another order, in which the solutions
+/// may be told apart.
+const MERGED: f64 = 1e-5;
 
 /// Number of orders.
 pub const ORDERS: usize = 24;
@@ -211,8 +229,7 @@ fn solve(lines: &[Line; 6], goal: &Motion, order: Order, slack: f64, found: &mut
         all &= apart;
         match flat {
             Some((u, width)) => view = view.zoomed(u, width),
-            // Real roots come in pairs: an odd number of them lacks one.
-            None => return all && found.len > before && (found.len - before) & 1 == 0,
+            None => return all && found.len > before,
         }
     }
     false
@@ -249,40 +266,65 @@ fn look(
     for i in 0..count {
         let Root { angle, imaginary } = roots[i];
         if imaginary.abs() < 1.0 && !(order.squared && imaginary.abs() < NEARLY_REAL) {
-            let [value, slope] = waves.at(angle);
-            let height = value.abs() + NEARLY_REAL * slope.abs();
-            if height < least {
-                (flat, least) = (Some(angle), height);
+            let rise = waves.rise(angle, NEARLY_REAL);
+            if rise < least {
+                (flat, least) = (Some(angle), rise);
             }
         }
         if done[i] || imaginary.abs() > NEARLY_REAL + 5.0 * sqrt(slack) {
             continue;
         }
-        // Roots that nearly fall together: their mean is more exact than each of them.
-        let (mut together, mut shift) = (0, 0.0);
+        let (mut together, mut shift, mut spread) = (0, 0.0, 0.0f64);
         let mut near = [false; MAX_SIZE];
         for (j, other) in roots[..count].iter().enumerate() {
             let [c, s] = cos_sin(other.angle - angle);
-            near[j] = c > 0.0 && s.abs() + (other.imaginary - imaginary).abs() < APART;
+            let gap = s.abs() + (other.imaginary - imaginary).abs();
+            near[j] = c > 0.0 && gap < APART;
             if near[j] {
+                spread = spread.max(gap);
                 together += multiplicity;
                 shift += s;
             }
         }
-        if together > 1 {
-            let (turn, _) = view.turn(angle + shift * multiplicity as f64 / together as f64);
-            let dimension = several(six, turn, |pair| add(turn, pair));
-            if dimension == together {
-                for (done, near) in done.iter_mut().zip(near) {
-                    *done |= near;
-                }
+        // Where null vectors of dimension one are looked for.
+        let (mut starts, mut many) = ([angle; MAX_SIZE], 0);
+        // Roots that nearly fall together: their mean is more exact than each of them.
+        let mean = angle + shift * multiplicity as f64 / together as f64;
+        let [extremum, value, bend] = waves.extremum(mean);
+        let fold = together == 2 && !order.squared && slack == 0.0;
+        if together == 1 || fold && value.abs() > FLAT * waves.largest {
+            // A root that is clear of others. Where they are not real the polynomial stays clear of zero.
+            if imaginary == 0.0 || together == 1 {
+                starts[0] = refined(six, &waves, view, angle);
+                many = 1;
+            }
+        } else {
+            done.iter_mut().zip(near).for_each(|(done, near)| *done |= near);
+            let merged = spread < MERGED || order.squared;
+            let (turn, _) = view.turn(mean);
+            let all = several(six, turn, |pair| add(turn, pair)) == together;
+            apart &= merged && (all || fold);
+            if all && merged {
                 continue;
             }
-            apart = false;
+            if fold {
+                // Seen from outside of the two each leads to its own.
+                let side = sqrt(2.0 * (value.abs() + ROUNDING * waves.largest) / bend.abs());
+                starts[..2].copy_from_slice(&[extremum - side, extremum + side]);
+                many = 2;
+            } else {
+                for (root, _) in roots.iter().zip(near).filter(|(_, near)| *near) {
+                    starts[many] = root.angle;
+                    many += 1;
+                }
+            }
         }
-        let (turn, _) = view.turn(refined(six, &waves, view, angle));
-        if let Some(pair) = single(six, turn) {
-            add(turn, pair);
+        for u in &starts[..many] {
+            let (turn, _) = view.turn(*u);
+            match single(six, turn) {
+                Some(pair) => add(turn, pair),
+                None => apart = false,
+            }
         }
     }
     // As wide as the roots reach that rounding has moved.
@@ -291,12 +333,8 @@ fn look(
         for root in &roots[..count] {
             let [c, s] = cos_sin(root.angle - angle);
             let gap = s.abs() + root.imaginary.abs();
-            let [value, slope] = waves.at(root.angle);
-            if c > 0.0
-                && gap < 0.5
-                && gap > width
-                && value.abs() + NEARLY_REAL * slope.abs() < FLAT * waves.largest
-            {
+            let low = waves.rise(root.angle, NEARLY_REAL) < FLAT * waves.largest;
+            if c > 0.0 && gap < 0.5 && gap > width && low {
                 width = gap;
             }
         }

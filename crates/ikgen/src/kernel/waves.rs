@@ -126,6 +126,27 @@ impl Waves {
         (turn, value)
     }
 
+    /// The extremum near an angle, with the value and the second derivative there; Newton steps.
+    pub fn extremum(&self, angle: f64) -> [f64; 3] {
+        let mut at = angle;
+        let [mut value, mut slope, mut bend] = self.bends(cos_sin(at));
+        for _ in 0..4 {
+            let step = -slope / bend;
+            if !(step.abs() < 1e-2) || step.abs() < 1e-12 {
+                break;
+            }
+            at += step;
+            [value, slope, bend] = self.bends(cos_sin(at));
+        }
+        [at, value, bend]
+    }
+
+    /// How high the polynomial rises within `reach` of an angle, to second order.
+    pub fn rise(&self, angle: f64, reach: f64) -> f64 {
+        let [value, slope, bend] = self.bends(cos_sin(angle));
+        value.abs() + reach * (slope.abs() + 0.5 * reach * bend.abs())
+    }
+
     /// Size of a wave.
     pub fn size(&self, k: usize) -> f64 {
         sqrt(self.d[k][0] * self.d[k][0] + self.d[k][1] * self.d[k][1])
