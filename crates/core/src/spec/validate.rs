@@ -58,6 +58,11 @@ impl Checker<'_> {
             .expected(format!("one of {}", listed(known())));
         if let Some(near) = near {
             diagnostic = diagnostic.hint(format!("did you mean `{near}`?"));
+        } else if self.root.key(&entry.key).is_some() {
+            diagnostic = diagnostic.hint(format!(
+                "`{}` is a key of the file itself: it goes above the first line in square brackets",
+                entry.key
+            ));
         } else if let Some(heading) = elsewhere {
             diagnostic = diagnostic.hint(format!("`{}` is a key of {heading}", entry.key));
         }
