@@ -191,6 +191,9 @@ impl Observer for Display {
                     progress.update(&title, done as f64 / total.max(1) as f64);
                 }
             }
+            Event::Warning { kind, subject, message } => {
+                progress.finish(&format!("  {kind} of {subject}: warning: {message}"));
+            }
             Event::Brought { kind, subject } => {
                 progress.finish(&format!("  {kind} of {subject}: from the shared knowledge base"));
             }

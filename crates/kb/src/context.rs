@@ -86,6 +86,11 @@ impl Context<'_> {
         self.observer.event(Event::Progress { kind: self.kind, subject: self.subject, done, total });
     }
 
+    /// Tells the user something that the artefact does not say. Nothing is kept: who computes it hears it.
+    pub fn warn(&self, message: &str) {
+        self.observer.event(Event::Warning { kind: self.kind, subject: self.subject, message });
+    }
+
     /// Stops a build that nobody waits for any more.
     pub fn checkpoint(&self) -> Result<(), BuildError> {
         if self.observer.cancelled() { Err(BuildError::Cancelled) } else { Ok(()) }

@@ -66,6 +66,15 @@ pub enum Event<'a> {
         /// Items in all.
         total: u64,
     },
+    /// Something about an artefact that is being computed which its user should know.
+    Warning {
+        /// Name of the kind.
+        kind: &'static str,
+        /// What it is about.
+        subject: &'a str,
+        /// What, as a sentence.
+        message: &'a str,
+    },
     /// An artefact was brought from the depot that the store is shared in.
     Brought {
         /// Name of the kind.

@@ -1,8 +1,10 @@
 //! Knowledge bases: compiling into one and looking at what it holds.
 
+use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use robotc_kb::{Event, Graph, Knowledge, Observer, Outcome, Project, Store};
@@ -42,6 +44,12 @@ impl<'a> Watch<'a> {
 
 impl Observer for Watch<'_> {
     fn event(&self, event: Event<'_>) {
+        if let Event::Warning { kind, subject, message } = event {
+            let text = CString::new(format!("{kind} of {subject}: {message}")).unwrap_or_default();
+            let warned = Python::attach(|py| PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1));
+            self.interrupts.keep(warned);
+            return;
+        }
         let Some(progress) = &self.progress else { return };
         let told = match event {
             Event::Started { kind, subject, .. } => Some((kind, subject, 0.0)),

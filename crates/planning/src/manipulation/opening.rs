@@ -13,7 +13,7 @@ use super::maker::Maker;
 use super::picks::hand_check;
 use super::plan::{Choice, GoalFailure, OpenChoice, SegmentKind, Stage, Tried};
 use super::problem::{GoalContext, with_fingers_space};
-use super::rejections::{Cause, Filter, Rejections};
+use super::rejections::{Cause, Filter, Rejections, none_usable};
 use super::sequence::{Observer, Reached};
 use super::stretch::{back_off, cause, fine_checker, fingers_move, state_is_free};
 use crate::budget::{Budget, Interrupt};
@@ -252,7 +252,7 @@ impl Opening<'_, '_, '_> {
         }
         let missed = last.unwrap_or_else(|| {
             let mut missed = GoalFailure::new(self.cx.object_name(), Stage::Grasps);
-            missed.message = format!("none of {} passes all tests", self.cages.len());
+            missed.message = none_usable(self.cages.len());
             missed
         });
         Err(self.counted(missed))

@@ -170,6 +170,14 @@ impl fmt::Display for Rejections {
     }
 }
 
+/// Says that no grasp of a set of `known` ones can be used.
+pub(super) fn none_usable(known: usize) -> String {
+    match known {
+        0 => "the knowledge base knows of none; computing its set anew says why".into(),
+        _ => format!("none of {known} passes all tests"),
+    }
+}
+
 /// The most frequent causes with their counts, behind `prefix`.
 fn name_causes(f: &mut fmt::Formatter<'_>, prefix: &str, mut causes: Vec<(&Cause, u32)>) -> fmt::Result {
     causes.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(b.0)));

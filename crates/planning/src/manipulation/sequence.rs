@@ -20,7 +20,7 @@ use super::plan::{
     SkippedGoal, Stage, Tried,
 };
 use super::problem::{GoalContext, Manipulation, finger_space, gripper_links};
-use super::rejections::{Filter, Rejections};
+use super::rejections::{Filter, Rejections, none_usable};
 use super::stretch::cause;
 use crate::budget::{Budget, Interrupt};
 use crate::constraint::Constraint;
@@ -211,7 +211,7 @@ fn plan_goal(
                 } else if failure.reason == RrtFailureReason::NoGoal {
                     (missed.stage, missed.message) = match &carries.last {
                         Some(message) => (Stage::Carry, message.clone()),
-                        None => (Stage::Grasps, format!("none of {known} passes all tests")),
+                        None => (Stage::Grasps, none_usable(known)),
                     };
                 }
                 return Err(carries.conclude(missed, &sampler));

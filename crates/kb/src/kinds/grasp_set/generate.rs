@@ -1,5 +1,7 @@
 //! From approaches to a ranked grasp set.
 
+use std::fmt;
+
 use nalgebra::Point3;
 use robotc_core::geom::{ConvexParts, MeshIndex};
 use robotc_core::model::TriMesh;
@@ -63,6 +65,18 @@ pub(super) struct Counts {
     pub(super) no_closure: usize,
     /// Force closure.
     pub(super) closed: usize,
+}
+
+impl fmt::Display for Counts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { tried, no_touch, few_fingers, palm, no_closure, closed } = self;
+        write!(
+            f,
+            "of {tried} approaches {no_touch} passed the object by, {few_fingers} closed with fewer than two fingers on it, \
+             {palm} had the palm or the back of a finger in it, {no_closure} gave contacts that do not hold, and {closed} \
+             held but slip away when the object is moved a little"
+        )
+    }
 }
 
 /// Everything that trying an approach needs.

@@ -100,7 +100,7 @@ crate::parameters! {
 impl Kind for GraspSet {
     const NAME: &'static str = "grasp_set";
     const FORMAT: u32 = 2;
-    const ALGORITHM: u32 = 6;
+    const ALGORITHM: u32 = 7;
     const PORTABILITY: Portability = Portability::Portable;
     const IN_PIECES: bool = true;
     const DOC: &'static str =
@@ -254,7 +254,7 @@ mod build {
                 .ok_or_else(|| BuildError::Impossible("the object has no surface".into()))?;
             let trials =
                 context.map_in_pieces("trials", &generator.approaches, |_, a| generator.attempt(a))?;
-            let (candidates, _) = generator.candidates(trials).map_err(damaged)?;
+            let (candidates, counts) = generator.candidates(trials).map_err(damaged)?;
             let mut grasps = Vec::new();
             for (i, some) in candidates.chunks(JUDGED_AT_ONCE).enumerate() {
                 if grasps.len() < parameters.most_grasps as usize {
@@ -263,6 +263,9 @@ mod build {
                     let judged = judged.into_iter().flatten().map(Stored::grasp);
                     grasps.extend(judged.collect::<Result<Vec<_>, _>>().map_err(damaged)?);
                 }
+            }
+            if grasps.is_empty() {
+                context.warn(&format!("no grasp: {counts}"));
             }
             grasps.truncate(parameters.most_grasps as usize);
             grasps.sort_by(|a, b| b.score.total_cmp(&a.score));

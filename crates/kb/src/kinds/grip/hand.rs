@@ -44,8 +44,16 @@ pub(crate) struct Hand<'a> {
     rigid: Vec<(usize, Pose)>,
     /// For each degree of freedom of the gripper.
     travels: Vec<Vec<Travel>>,
-    closing: Vec<Vec<(usize, Vector3<f64>)>>,
-    opposes: Vec<bool>,
+    jaws: Vec<Option<Jaws>>,
+}
+
+/// The finger links of a drive that close towards each other.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Jaws {
+    /// Unit vector from the second side to the first, palm frame.
+    pub(crate) axis: Vector3<f64>,
+    /// Links of either side, positions in [`Hand::links`]. All links of a linkage that swings as one finger are on its side.
+    pub(crate) sides: [Vec<usize>; 2],
 }
 
 impl<'a> Hand<'a> {
@@ -102,20 +110,12 @@ impl<'a> Hand<'a> {
             slot_of,
             rigid,
             travels: Vec::new(),
-            closing: Vec::new(),
-            opposes: Vec::new(),
+            jaws: Vec::new(),
         };
         for finger in 0..gripper.dofs.len() {
             let moved = (0..hand.links.len()).filter(|&i| hand.links[i].moved_by.contains(&finger));
             hand.travels.push(moved.map(|link| hand.travel(link, finger)).collect());
-            let directions = hand.directions(finger);
-            let against = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(b) < -0.5;
-            let opposes = directions
-                .iter()
-                .enumerate()
-                .any(|(i, (_, a))| directions[..i].iter().any(|(_, b)| against(a, b)));
-            hand.opposes.push(opposes);
-            hand.closing.push(directions);
+            hand.jaws.push(Jaws::of(&hand.directions(finger)));
         }
         hand
     }
@@ -203,14 +203,9 @@ impl<'a> Hand<'a> {
         &self.travels[finger]
     }
 
-    /// Finger links of a drive with the direction in which they close, in the palm frame, at the middle of the range.
-    pub(crate) fn closing_directions(&self, finger: usize) -> &[(usize, Vector3<f64>)] {
-        &self.closing[finger]
-    }
-
-    /// Whether links moved by one drive close towards each other, as jaws do.
-    pub(crate) fn opposes(&self, finger: usize) -> bool {
-        self.opposes[finger]
+    /// The links that one drive closes towards each other; `None` when they all go the same way, or it closes nothing.
+    pub(crate) fn jaws(&self, finger: usize) -> Option<&Jaws> {
+        self.jaws[finger].as_ref()
     }
 
     /// Bounds over all finger values. With joints of factors f below each other, no point is farther from an axis than the
@@ -256,6 +251,7 @@ impl<'a> Hand<'a> {
         }
     }
 
+    /// Finger links of a drive with the direction in which they close, palm frame, at the middle of the range.
     fn directions(&self, finger: usize) -> Vec<(usize, Vector3<f64>)> {
         let (low, high) = self.range(finger);
         let sign = self.gripper.closing[finger].signum();
@@ -275,6 +271,30 @@ impl<'a> Hand<'a> {
                 Some((i, moved.try_normalize(1e-12)?))
             })
             .collect()
+    }
+}
+
+/// Links close against each other when the angle between their directions is larger than this (cosine).
+const AGAINST: f64 = -0.5;
+
+impl Jaws {
+    /// From the directions in which links close.
+    fn of(directions: &[(usize, Vector3<f64>)]) -> Option<Self> {
+        let pairs = directions
+            .iter()
+            .enumerate()
+            .flat_map(|(i, (_, a))| directions[..i].iter().map(move |(_, b)| (b.dot(a), b - a)));
+        let (cosine, difference) = pairs.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+        if cosine >= AGAINST {
+            return None;
+        }
+        // The first side closes against the axis that points to it.
+        let axis = -difference.normalize();
+        let side = |sign: f64| {
+            let on_it = directions.iter().filter(|(_, closing)| sign * closing.dot(&axis) < 0.0);
+            on_it.map(|(link, _)| *link).collect()
+        };
+        Some(Self { axis, sides: [side(1.0), side(-1.0)] })
     }
 }
 

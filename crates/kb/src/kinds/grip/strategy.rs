@@ -11,7 +11,7 @@ use robotc_planning::grasp::tangents;
 use serde::{Deserialize, Serialize};
 
 use super::advance::{TOUCH, close_drive, first_touch};
-use super::hand::Hand;
+use super::hand::{Hand, Jaws};
 
 /// Where and how a hand comes in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -145,19 +145,16 @@ pub(crate) fn close_fingers(
     let mut object_from_tool = tool;
     let mut values = open.to_vec();
     for finger in (0..values.len()).filter(|&f| gripper.closing[f] != 0.0) {
-        let rounds = if hand.opposes(finger) { CENTRING_ROUNDS } else { 1 };
-        for _ in 0..rounds {
+        for _ in 0..CENTRING_ROUNDS {
             let object_from_palm = object_from_tool * tool_from_palm;
             close_drive(hand, object, &object_from_palm, &mut values, finger);
-            if !hand.opposes(finger) {
+            let Some(jaws) = hand.jaws(finger) else { break };
+            let rest = rest_gap(hand, jaws, object, &object_from_palm, &values);
+            if rest.abs() <= TOUCH {
                 break;
             }
-            match rest_gap(hand, object, &object_from_palm, &values, finger) {
-                Some((shift, rest)) if rest > TOUCH => {
-                    object_from_tool = Translation3::from(shift * (0.5 * rest)) * object_from_tool;
-                }
-                _ => break,
-            }
+            let shift = object_from_palm.rotation * jaws.axis * (0.5 * rest);
+            object_from_tool = Translation3::from(shift) * object_from_tool;
         }
     }
     let object_from_palm = object_from_tool * tool_from_palm;
@@ -187,26 +184,15 @@ pub(crate) fn close_fingers(
     Ok(ClosedHand { object_from_tool, closed: values, object_from_links })
 }
 
-/// How far the finger that does not touch yet is away, and which way the hand must go to share that gap.
-fn rest_gap(
-    hand: &Hand,
-    object: &ConvexParts,
-    object_from_palm: &Pose,
-    values: &[f64],
-    finger: usize,
-) -> Option<(Vector3<f64>, f64)> {
+/// How much farther the second side of a pair of jaws is from the object than the first, metres; the hand moves by half of that along
+/// the axis, away from what the second side has still to reach, for both to touch.
+fn rest_gap(hand: &Hand, jaws: &Jaws, object: &ConvexParts, object_from_palm: &Pose, values: &[f64]) -> f64 {
     let palm_from_links = hand.palm_from_links(values);
-    let mut nearest: Option<(Vector3<f64>, f64)> = None;
-    let mut farthest: f64 = 0.0;
-    for (i, closing_in_palm) in hand.closing_directions(finger) {
-        let free = link_gap(hand, *i, &(object_from_palm * palm_from_links[*i]), object);
-        if nearest.is_none_or(|(_, best)| free < best) {
-            nearest = Some((object_from_palm.rotation * -closing_in_palm, free));
-        }
-        farthest = farthest.max(free);
-    }
-    // The touching finger gives way: the hand moves against its closing direction.
-    nearest.map(|(away, free)| (away, farthest - free))
+    let [first, second] = jaws.sides.each_ref().map(|links| {
+        let gaps = links.iter().map(|&i| link_gap(hand, i, &(object_from_palm * palm_from_links[i]), object));
+        gaps.fold(f64::INFINITY, f64::min)
+    });
+    second - first
 }
 
 /// Distance between a link and the object to a thousandth of itself, metres; zero when they touch.
