@@ -210,3 +210,25 @@ fn link_gap(hand: &Hand, link: usize, object_from_link: &Pose, object: &ConvexPa
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::jaws::{jaws, jaws_with_knuckles};
+    use super::*;
+    use robotc_core::geom::box_part;
+
+    #[test]
+    fn a_hand_beside_a_box_is_centred_on_it_whatever_hangs_on_its_jaws() {
+        let object = ConvexParts::new(vec![box_part(Vector3::new(0.1, 0.03, 0.1))]);
+        for (kinematics, gripper, parts) in [jaws(), jaws_with_knuckles()] {
+            let part = |l| parts.iter().find(|(link, _)| *link == l).map(|(_, p)| p);
+            let hand = Hand::new(&kinematics, &gripper, part);
+            for aside in [-0.02, 0.0, 0.015] {
+                let tool = Pose::translation(0.0, aside, -0.03);
+                let closed = close_fingers(&hand, &object, tool, &[0.04]).unwrap();
+                assert!(closed.object_from_tool.translation.y.abs() < TOUCH, "{}", closed.object_from_tool);
+                assert!((closed.closed[0] - 0.015).abs() < 2.0 * TOUCH, "{:?}", closed.closed);
+            }
+        }
+    }
+}
