@@ -2,6 +2,7 @@
 //! read the environment or choose a number of threads.
 
 mod args;
+mod chain;
 mod commands;
 mod description;
 mod input;

@@ -74,16 +74,20 @@ pub mod check;
 pub mod generate;
 pub mod goal;
 pub mod ir;
+#[cfg(feature = "generate")]
+mod jacobian;
 pub mod kernel;
 pub mod passes;
 #[cfg(feature = "generate")]
 pub mod report;
 pub mod run;
+#[cfg(feature = "generate")]
+mod vectors;
 
 #[cfg(feature = "generate")]
 pub use backend::RustOptions;
 #[cfg(feature = "generate")]
-pub use generate::{Compiled, Options, Refusal, compile};
+pub use generate::{Compiled, Options, Refusal, compile, compile_watched};
 pub use goal::GoalType;
 pub use ir::Program;
 #[cfg(feature = "generate")]

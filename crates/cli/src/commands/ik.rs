@@ -4,39 +4,42 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
-use robotc_core::ik::{IkSolutions, InverseKinematics as _};
-use robotc_core::urdf::{self, MeshPolicy};
-use robotc_core::{Kinematics, LinkIdx, RobotModel, Seed, SerialChain, Sources, diag};
+use robotc_core::ik::{IkSolutions, InverseKinematics as _, Preferences};
+use robotc_core::urdf::MeshPolicy;
+use robotc_core::{Pose, Seed, SerialChain, diag};
 use robotc_ikgen::backend::RustOptions;
 use robotc_ikgen::generate::natural;
 use robotc_ikgen::report::{ProofOptions, Report, prove};
-use robotc_ikgen::{Compiled, GoalType, Options, Refusal, compile};
-use robotc_kb::os::OsSystem;
+use robotc_ikgen::run::RedundancyOptions;
+use robotc_ikgen::{Compiled, GoalType, Options, Refusal, compile_watched};
 use robotc_runtime::picture::IkPicture;
 use robotc_runtime::view;
 
 use super::compile::write_whole;
+use crate::chain::{self, Arm, Ends, unknown};
 use crate::description::DescriptionArgs;
 use crate::output::{Failure, Outcome, print, say};
 
 /// Compile and prove the inverse kinematics of a chain of a URDF
 #[derive(Args)]
-#[command(after_help = "Examples:\n  robotc ik arm.urdf --base base_link --tip tool0\n  \
+#[command(
+    after_help = "Examples:\n  robotc ik arm.urdf\n  robotc ik arm.urdf --base base_link --tip tool0\n  \
     robotc ik arm.urdf --base base_link --tip tool0 -o arm_ik.rs --report arm_ik.json\n  \
     robotc ik arm.urdf --base base_link --tip tool0 -o arm_ik.c\n  \
     robotc ik arm.urdf --base base_link --tip tool0 --view solutions.html\n  \
     robotc ik welder.urdf --base base_link --tip torch --type translationdirection5d\n\n\
     The source is one Rust file without dependencies that needs neither std nor memory allocation, or a C99 source with its \
-    header. It is written only when the solver passed its proof.")]
+    header. It is written only when the solver passed its proof."
+)]
 pub(crate) struct Ik {
     /// URDF or xacro file; its meshes are not needed
     urdf: PathBuf,
-    /// Link where the chain starts
+    /// Link where the chain starts [default: that of the arm with most joints]
     #[arg(long, value_name = "LINK")]
-    base: String,
-    /// Link where it ends
+    base: Option<String>,
+    /// Link where it ends [default: that of the arm with most joints, before its gripper]
     #[arg(long, value_name = "LINK")]
-    tip: String,
+    tip: Option<String>,
     /// What the solver is asked for: transform6d, rotation3d, translation3d, direction3d, ray4d, lookat3d, translationdirection5d,
     /// translationxy2d, translationxyorientation3d, translationlocalglobal6d, translation{x,y,z}axisangle4d,
     /// translation{xaxisangleznorm,yaxisanglexnorm,zaxisangleynorm}4d, or auto: what the joints suggest
@@ -81,8 +84,9 @@ pub(crate) struct Ik {
     /// File for a 3-D page with all solutions of a pose side by side
     #[arg(long, value_name = "FILE.html")]
     view: Option<PathBuf>,
-    /// Joint values of that pose, separated by commas, radians and metres [default: a drawn pose with many solutions]
-    #[arg(long, value_name = "Q", value_delimiter = ',', allow_hyphen_values = true, requires = "view")]
+    /// Joint values of that pose, separated by commas, radians and metres [default: a drawn pose with many solutions]; of a chain with a
+    /// free joint the values are told that this may have there
+    #[arg(long, value_name = "Q", value_delimiter = ',', allow_hyphen_values = true)]
     at: Option<Vec<f64>>,
 }
 
@@ -113,7 +117,10 @@ enum Language {
 }
 
 pub(crate) fn run(args: &Ik) -> Outcome {
-    let Arm { kinematics, base, chain } = arm(args)?;
+    // Meshes are for looking at alone.
+    let meshes = if args.view.is_some() { MeshPolicy::SkipMissing } else { MeshPolicy::Ignore };
+    let ends = Ends { base: args.base.as_deref(), tip: args.tip.as_deref() };
+    let Arm { kinematics, base, chain } = chain::load(&args.urdf, &args.reading.options(meshes), ends)?;
     if !args.tolerance.is_finite() || args.tolerance < 0.0 {
         return Err(Failure::Input("--tolerance cannot be negative".into()));
     }
@@ -155,11 +162,19 @@ pub(crate) fn run(args: &Ik) -> Outcome {
     if let Some(path) = &args.output {
         write_source(path, compiled, args)?;
     }
+    if args.view.is_none() && args.at.is_none() {
+        return Ok(());
+    }
+    let values = shown_values(compiled, args)?;
+    let base_from_tip = compiled.longer_chain().forward(&values);
+    let free: Vec<f64> = compiled.free.iter().map(|v| values[*v]).collect();
+    if let [own] = compiled.free[..]
+        && let Some(joint) = chain.variables.get(own)
+    {
+        show_intervals(compiled, &base_from_tip, &free, &joint.name);
+    }
     if let Some(path) = &args.view {
-        let values = shown_values(compiled, args)?;
-        let base_from_tip = compiled.longer_chain().forward(&values);
         let mut found = IkSolutions::new();
-        let free: Vec<f64> = compiled.free.iter().map(|v| values[*v]).collect();
         compiled.solver().solve(&base_from_tip, &free, &mut found);
         let solutions: Vec<Vec<f64>> = found.iter().map(<[f64]>::to_vec).collect();
         let picture =
@@ -170,40 +185,50 @@ pub(crate) fn run(args: &Ik) -> Outcome {
     Ok(())
 }
 
+/// Says which values the free joint may have at a pose.
+fn show_intervals(compiled: &Compiled, base_from_tip: &Pose, free: &[f64], joint: &str) {
+    let options = RedundancyOptions::default();
+    let found = compiled.solver().free_intervals(base_from_tip, free, 0, &Preferences::default(), &options);
+    let Ok(found) = found else { return };
+    let intervals: Vec<String> =
+        found.intervals.iter().map(|[low, high]| format!("[{low:.4}, {high:.4}]")).collect();
+    let values = if intervals.is_empty() { "no value".into() } else { intervals.join(" ") };
+    print(&format!("{joint} there, within limits: {values}, {}", found.completeness));
+}
+
 /// Compiles on another thread, which is left behind when the seconds are over.
 fn compile_within(chain: &SerialChain, options: &Options, seconds: f64) -> Result<Compiled, Refusal> {
+    enum News {
+        Tried(String),
+        Done(Result<Compiled, Refusal>),
+    }
     let (send, receive) = std::sync::mpsc::channel();
     let work = (chain.clone(), options.clone());
     std::thread::spawn(move || {
         // Whoever asked may not wait any more.
-        drop(send.send(compile(&work.0, &work.1)));
+        let watch = |line: &str| drop(send.send(News::Tried(line.into())));
+        let result = compile_watched(&work.0, &work.1, &watch);
+        drop(send.send(News::Done(result)));
     });
+    let start = Instant::now();
     let budget = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
-    receive.recv_timeout(budget).unwrap_or_else(|_| {
-        let reason = format!(
-            "no solver was found within {seconds} s; --budget allows more, --free or --type may ask for less"
-        );
-        Err(Refusal { reason, trace: Vec::new() })
-    })
-}
-
-/// The chain, and what it is part of.
-struct Arm {
-    kinematics: Kinematics,
-    base: LinkIdx,
-    chain: SerialChain,
-}
-
-fn arm(args: &Ik) -> Outcome<Arm> {
-    let mut sources = Sources::new();
-    // Meshes are for looking at alone.
-    let meshes = if args.view.is_some() { MeshPolicy::SkipMissing } else { MeshPolicy::Ignore };
-    let (model, found) = urdf::load(&OsSystem, &mut sources, &args.urdf, &args.reading.options(meshes));
-    let model = crate::input::accept(model, &found, &sources)?;
-    let (base, tip) = (link(&model, &args.base)?, link(&model, &args.tip)?);
-    let kinematics = Kinematics::new(model.into());
-    let chain = SerialChain::between(&kinematics, base, tip).map_err(|e| Failure::Input(e.to_string()))?;
-    Ok(Arm { kinematics, base, chain })
+    let mut trace: Vec<String> = Vec::new();
+    loop {
+        match receive.recv_timeout(budget.saturating_sub(start.elapsed())) {
+            Ok(News::Tried(line)) => trace.push(line),
+            Ok(News::Done(result)) => return result,
+            Err(_) => break,
+        }
+    }
+    // Where unknowns are found one by one, what could not be is known.
+    let left = trace.iter().rev().find(|line| line.contains("no equation holds only one"));
+    let told = left.or(trace.last()).map_or("nothing was tried yet".into(), |line| {
+        format!("of {} attempts the last that tells: {line}", trace.len())
+    });
+    let reason = format!(
+        "no solver was found within {seconds} s; {told}; --budget allows more, --free or --type may ask for less"
+    );
+    Err(Refusal { reason, trace })
 }
 
 /// Values whose pose is shown: those that were given, or of some drawn within limits those whose pose has most solutions.
@@ -235,11 +260,6 @@ fn shown_values(compiled: &Compiled, args: &Ik) -> Outcome<Vec<f64>> {
     Ok(most.1)
 }
 
-fn link(model: &RobotModel, name: &str) -> Outcome<LinkIdx> {
-    let names = model.links().iter().map(|link| link.name.as_str());
-    model.link_named(name).ok_or_else(|| unknown("link", name, names))
-}
-
 fn free_variables(chain: &SerialChain, names: &[String]) -> Outcome<Vec<usize>> {
     let mut free = Vec::new();
     for name in names {
@@ -250,14 +270,6 @@ fn free_variables(chain: &SerialChain, names: &[String]) -> Outcome<Vec<usize>> 
     free.sort_unstable();
     free.dedup();
     Ok(free)
-}
-
-fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Failure {
-    let hint = match diag::nearest(name, known.clone()) {
-        Some(near) => format!("did you mean {near}?"),
-        None => format!("there are {}", known.collect::<Vec<_>>().join(", ")),
-    };
-    Failure::Input(format!("there is no {what} {name}; {hint}"))
 }
 
 fn show(chain: &SerialChain, report: &Report) {

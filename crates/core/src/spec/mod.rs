@@ -32,7 +32,7 @@ mod task_schema;
 mod validate;
 
 pub use check::{Summary, check};
-pub use init::{InitOptions, init};
+pub use init::{ArmGuess, InitOptions, guess_arms, init};
 pub use json_schema::json_schema;
 pub use parameters::{
     KindParameters, Parameter, ParameterDefault, ParameterKind, ParameterTable, ParameterValue, Parameters,

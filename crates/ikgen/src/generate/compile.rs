@@ -63,6 +63,19 @@ pub struct Refusal {
     pub trace: Vec<String>,
 }
 
+/// Everything that was tried, told while it happens.
+struct Trace<'a> {
+    lines: Vec<String>,
+    watch: &'a dyn Fn(&str),
+}
+
+impl Trace<'_> {
+    fn push(&mut self, line: String) {
+        (self.watch)(&line);
+        self.lines.push(line);
+    }
+}
+
 /// A solved chain.
 #[derive(Debug, Clone)]
 pub struct Compiled {
@@ -121,7 +134,16 @@ impl Compiled {
 /// The chain is solved as it is described if a strategy fits it exactly; otherwise relations between its axes that
 /// hold within a growing tolerance are taken as meant. A program is returned only when it solves all of its trial poses.
 pub fn compile(chain: &SerialChain, options: &Options) -> Result<Compiled, Refusal> {
-    let mut trace = Vec::new();
+    compile_watched(chain, options, &|_| {})
+}
+
+/// As [`compile`], with each line of the trace given to `watch` as soon as it is known: for callers who may not wait for the end.
+pub fn compile_watched(
+    chain: &SerialChain,
+    options: &Options,
+    watch: &dyn Fn(&str),
+) -> Result<Compiled, Refusal> {
+    let mut trace = Trace { lines: Vec::new(), watch };
     let longer = options.goal.extended(chain);
     let result = search(chain, &longer, options, &mut trace);
     match result {
@@ -130,11 +152,11 @@ pub fn compile(chain: &SerialChain, options: &Options) -> Result<Compiled, Refus
             snap: program.snap,
             free: program.free.clone(),
             program,
-            trace,
+            trace: trace.lines,
             chain: chain.clone(),
             longer,
         }),
-        Err(reason) => Err(Refusal { reason, trace }),
+        Err(reason) => Err(Refusal { reason, trace: trace.lines }),
     }
 }
 
@@ -142,7 +164,7 @@ fn search(
     own: &SerialChain,
     chain: &SerialChain,
     options: &Options,
-    trace: &mut Vec<String>,
+    trace: &mut Trace<'_>,
 ) -> Result<(Program, String), String> {
     if Facts::coupled(chain, 0.0).is_none() {
         return Err("joints that follow others are solved only where they move by the same amount".into());
@@ -167,7 +189,7 @@ fn search(
     let allowed = ladder.into_iter().filter(|t| *t <= options.tolerance.max(1e-9));
     for tolerance in allowed {
         for free in &choices {
-            let special = |rest, trace: &mut Vec<String>| {
+            let special = |rest, trace: &mut Trace<'_>| {
                 attempt(chain, options, free, tolerance, strategies::SPECIAL, rest, &letters, trace)
             };
             match special(false, trace) {
@@ -263,7 +285,7 @@ fn attempt(
     strategies: &[Strategy],
     rest: bool,
     letters: &str,
-    trace: &mut Vec<String>,
+    trace: &mut Trace<'_>,
 ) -> Result<Found, Option<String>> {
     let facts = Facts::new(chain, tolerance).ok_or(None)?;
     let described = if rest {
@@ -345,7 +367,7 @@ fn one_by_one(
     free: &[usize],
     tolerance: f64,
     letters: &str,
-    trace: &mut Vec<String>,
+    trace: &mut Trace<'_>,
 ) -> Result<Found, Option<String>> {
     let facts = Facts::coupled(chain, tolerance).ok_or(None)?;
     let line = format!("tolerance {tolerance:e}, free {free:?}, one by one: ");

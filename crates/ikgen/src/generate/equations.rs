@@ -64,6 +64,17 @@ pub enum Measure {
     Distance(Vector3<f64>, Vector3<f64>),
 }
 
+impl Measure {
+    /// What it is, in a word.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Measure::Height(..) => "height",
+            Measure::Angle(..) => "angle",
+            Measure::Distance(..) => "distance",
+        }
+    }
+}
+
 /// An equation between the two sides of a loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equation {

@@ -1,8 +1,10 @@
 //! Which joints of a redundant chain are given by the caller.
 
-use nalgebra::Matrix6;
 use robotc_core::Seed;
-use robotc_core::model::{ChainMotion, SerialChain};
+use robotc_core::model::SerialChain;
+
+use crate::jacobian::{jacobian, jacobian_determinant};
+use crate::vectors::random;
 
 /// Choices of free variables, best first: none for up to six variables that all matter; of seven each one that leaves a
 /// chain that moves well, farthest from the base first; no choice beyond seven.
@@ -69,7 +71,7 @@ fn subsets(count: usize, size: usize) -> Vec<Vec<usize>> {
 /// In how many ways a chain moves at a random place without these variables.
 pub(super) fn freedom(chain: &SerialChain, without: &[usize]) -> usize {
     let mut rng = Seed::new(0).split("ikgen freedom").rng();
-    let columns = jacobian(chain, &crate::report::poses::random(chain, &mut rng));
+    let columns = jacobian(chain, &random(chain, &mut rng));
     let left: Vec<usize> = (0..columns.len()).filter(|v| !without.contains(v)).collect();
     nalgebra::DMatrix::from_fn(6, left.len(), |i, j| columns[left[j]][i]).rank(1e-3)
 }
@@ -79,45 +81,8 @@ fn freedom_without(chain: &SerialChain, without: &[usize]) -> f64 {
     let mut rng = Seed::new(0).split("ikgen lock").rng();
     let mut sum = 0.0;
     for _ in 0..200 {
-        let values = crate::report::poses::random(chain, &mut rng);
+        let values = random(chain, &mut rng);
         sum += jacobian_determinant(chain, &values, without).unwrap_or(0.0).abs();
     }
     sum
-}
-
-/// Determinant of the Jacobian at the tip without the `given` variables; `None` unless six remain.
-pub(crate) fn jacobian_determinant(chain: &SerialChain, values: &[f64], given: &[usize]) -> Option<f64> {
-    let columns = jacobian(chain, values);
-    let left: Vec<usize> = (0..columns.len()).filter(|v| !given.contains(v)).collect();
-    if left.len() != 6 {
-        return None;
-    }
-    Some(Matrix6::from_fn(|i, j| columns[left[j]][i]).determinant())
-}
-
-/// Columns of the Jacobian: velocity of the tip, then angular velocity, in the base frame.
-pub(super) fn jacobian(chain: &SerialChain, values: &[f64]) -> Vec<[f64; 6]> {
-    let tip = chain.forward(values).translation.vector;
-    let mut columns = vec![[0.0; 6]; chain.variables.len()];
-    let mut at = robotc_core::Pose::identity();
-    for joint in &chain.joints {
-        at *= joint.previous_from_joint;
-        let axis = at.rotation * joint.axis.into_inner();
-        let value = joint.multiplier * values[joint.variable] + joint.offset;
-        let (linear, angular) = match joint.motion {
-            ChainMotion::Revolute => (axis.cross(&(tip - at.translation.vector)), axis),
-            ChainMotion::Prismatic => (axis, nalgebra::Vector3::zeros()),
-        };
-        for i in 0..3 {
-            columns[joint.variable][i] += joint.multiplier * linear[i];
-            columns[joint.variable][3 + i] += joint.multiplier * angular[i];
-        }
-        match joint.motion {
-            ChainMotion::Revolute => {
-                at.rotation *= nalgebra::UnitQuaternion::from_axis_angle(&joint.axis, value);
-            }
-            ChainMotion::Prismatic => at.translation.vector += axis * value,
-        }
-    }
-    columns
 }

@@ -12,5 +12,5 @@ mod one_by_one;
 pub mod problem;
 pub mod strategies;
 
-pub use compile::{Compiled, Options, Refusal, compile};
+pub use compile::{Compiled, Options, Refusal, compile, compile_watched};
 pub use natural::natural;

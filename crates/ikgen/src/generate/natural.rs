@@ -4,8 +4,9 @@ use nalgebra::Vector3;
 use robotc_core::Seed;
 use robotc_core::model::SerialChain;
 
-use super::lock::{freedom, jacobian};
+use super::lock::freedom;
 use crate::GoalType;
+use crate::jacobian::jacobian;
 
 /// In the order in which they are preferred where several suit.
 const ORDER: [GoalType; 10] = [

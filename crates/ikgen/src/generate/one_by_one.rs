@@ -64,8 +64,9 @@ pub(super) fn write(facts: &Facts, free: &[usize], b: &Builder) -> Result<String
     let mut order = Vec::new();
     while !unknown.is_empty() {
         let Some((v, solution)) = next(axes, &candidates, &unknown, variables) else {
-            let left: Vec<String> = unknown.iter().map(|v| (v + 1).to_string()).collect();
-            return Err(format!("no equation holds only one of the joints {}", left.join(", ")));
+            let numbers: Vec<String> = unknown.iter().map(|v| (v + 1).to_string()).collect();
+            let left = left(axes, &candidates, &unknown, variables);
+            return Err(format!("no equation holds only one of the joints {}; {left}", numbers.join(", ")));
         };
         order.push((v + 1).to_string());
         let problem = Written { b, axes, goal: &goal };
@@ -74,6 +75,43 @@ pub(super) fn write(facts: &Facts, free: &[usize], b: &Builder) -> Result<String
     }
     b.emit(&moves);
     Ok(format!("joints in the order {}", order.join(", ")))
+}
+
+/// Which equations are left: those with the fewest unknowns.
+fn left(axes: &[Axis], candidates: &[Equation], unknown: &[usize], variables: usize) -> String {
+    /// Sets of unknowns that are told at most.
+    const MOST: usize = 4;
+    let mut rng = Seed::new(0).split("ikgen equations left").rng();
+    let motion = |v: usize| axes.iter().find(|a| a.variable == v).map_or(ChainMotion::Revolute, |a| a.motion);
+    let mut draw = || -> Vec<Step> { (0..variables).map(|v| Step::random(motion(v), &mut rng)).collect() };
+    let (here, there) = (draw(), draw());
+    let mut sets: Vec<(Vec<usize>, Vec<&str>)> = Vec::new();
+    for e in candidates {
+        let moves = |v: &usize| {
+            let mut steps = here.clone();
+            steps[*v] = there[*v];
+            State { axes, steps, goal: &here }.gap(e).abs() > CHANGE
+        };
+        let joints: Vec<usize> = unknown.iter().copied().filter(moves).collect();
+        let kind = e.measure.name();
+        match sets.iter_mut().find(|(other, _)| *other == joints) {
+            Some((_, kinds)) if kinds.contains(&kind) => {}
+            Some((_, kinds)) => kinds.push(kind),
+            None if !joints.is_empty() => sets.push((joints, vec![kind])),
+            None => {}
+        }
+    }
+    sets.sort_by(|a, b| a.0.len().cmp(&b.0.len()).then(a.0.cmp(&b.0)));
+    let fewest = sets.first().map_or(0, |(joints, _)| joints.len());
+    let told = sets.iter().take_while(|(joints, _)| joints.len() == fewest);
+    let told = told.take(MOST).map(|(joints, kinds)| {
+        let joints: Vec<String> = joints.iter().map(|v| (v + 1).to_string()).collect();
+        format!("{} ({})", joints.join(" and "), kinds.join(", "))
+    });
+    match told.collect::<Vec<String>>() {
+        told if told.is_empty() => "none is left".into(),
+        told => format!("left are equations in {}", told.join("; ")),
+    }
 }
 
 /// The best unknown to find next, and how.

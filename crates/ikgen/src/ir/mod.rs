@@ -263,6 +263,21 @@ impl Program {
         in_block(&self.body, kind)
     }
 
+    /// Its remarks in the order of the text, each once: which equations it solves.
+    pub fn remarks(&self) -> Vec<&str> {
+        fn in_block<'a>(block: &'a Block, found: &mut Vec<&'a str>) {
+            for stmt in block {
+                match stmt {
+                    Stmt::Note(words) if !found.contains(&words.as_str()) => found.push(words),
+                    _ => blocks_of(stmt).into_iter().for_each(|inner| in_block(inner, found)),
+                }
+            }
+        }
+        let mut found = Vec::new();
+        in_block(&self.body, &mut found);
+        found
+    }
+
     /// The text of one expression.
     pub fn expr_text(&self, e: Expr) -> String {
         print::expr(self, e)

@@ -66,6 +66,8 @@ pub struct Report {
     pub kind: String,
     /// Names of the variables that the caller gives.
     pub free_joints: Vec<String>,
+    /// Which equations the solver solves, in the order in which it does: the remarks of its program.
+    pub equations: Vec<String>,
     /// Difference between the described chain and the ideal one: radians and metres, the larger.
     pub snap_max: f64,
     /// Seconds that compilation took.
@@ -87,6 +89,7 @@ impl Report {
             class: String::new(),
             kind: goal.name().into(),
             free_joints: Vec::new(),
+            equations: Vec::new(),
             snap_max: 0.0,
             generation_s,
             source_bytes: 0,
@@ -135,6 +138,7 @@ pub fn prove(
             .iter()
             .map(|v| compiled.longer_chain().variables[*v].name.clone())
             .collect(),
+        equations: compiled.program.remarks().into_iter().map(String::from).collect(),
         snap_max: compiled.snap,
         generation_s,
         source_bytes: compiled.rust_source(&crate::backend::RustOptions::default()).len(),

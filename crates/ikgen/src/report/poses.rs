@@ -1,10 +1,11 @@
 //! Joint vectors at which a solver is tried: random ones, and those where axes line up.
 
 use robotc_core::Seed;
-use robotc_core::model::{ChainMotion, SerialChain};
+use robotc_core::model::SerialChain;
 use robotc_core::rng::Rng;
 
-use crate::generate::lock::jacobian_determinant;
+use crate::jacobian::jacobian_determinant;
+pub use crate::vectors::{random, slides};
 
 /// A named set of joint vectors.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,33 +58,6 @@ pub fn sets(chain: &SerialChain, given: &[usize], poses: usize, seed: Seed) -> V
     sets.push(PoseSet { name: "grid90", regular: false, vectors: grid(chain, poses, &mut stream("grid90")) });
     sets.push(PoseSet { name: "near", regular: false, vectors: near });
     sets
-}
-
-/// Uniform over a full turn of each angle, and over the limits of each length.
-pub fn random(chain: &SerialChain, rng: &mut Rng) -> Vec<f64> {
-    let slides = slides(chain);
-    chain
-        .variables
-        .iter()
-        .zip(slides)
-        .map(|(v, slides)| {
-            if !slides {
-                rng.range(-std::f64::consts::PI, std::f64::consts::PI)
-            } else {
-                let (low, high) = (v.lower.max(-2.0), v.upper.min(2.0));
-                if low < high { rng.range(low, high) } else { rng.range(-1.0, 1.0) }
-            }
-        })
-        .collect()
-}
-
-/// Whether each variable is a length.
-pub fn slides(chain: &SerialChain) -> Vec<bool> {
-    let mut slides = vec![false; chain.variables.len()];
-    for joint in &chain.joints {
-        slides[joint.variable] = joint.motion == ChainMotion::Prismatic;
-    }
-    slides
 }
 
 /// Random vectors with one joint moved to where the determinant changes its sign.

@@ -76,6 +76,26 @@ pub fn init(
     (text, diagnostics)
 }
 
+/// A chain that may be an arm.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ArmGuess {
+    /// Link where it starts.
+    pub base: LinkIdx,
+    /// Link where it ends: the last one before a gripper, if it carries one.
+    pub tip: LinkIdx,
+    /// What moves it, base to tip.
+    pub dofs: Vec<DofIdx>,
+}
+
+/// The chains of a robot that may be arms, those that [`init`] would write without an SRDF; most joints first.
+pub fn guess_arms(model: &Arc<RobotModel>) -> Vec<ArmGuess> {
+    let arms = guess(model, None).arms.into_iter();
+    let mut found: Vec<ArmGuess> =
+        arms.map(|arm| ArmGuess { base: arm.base, tip: arm.tip, dofs: arm.dofs }).collect();
+    found.sort_by_key(|arm| std::cmp::Reverse(arm.dofs.len()));
+    found
+}
+
 /// What was found out about a robot.
 struct Guess {
     model: Arc<RobotModel>,

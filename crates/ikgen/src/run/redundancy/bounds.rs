@@ -3,7 +3,7 @@
 //! Every expression is bounded, and every equation gives the roots that it has for all values of the interval at once. Where an
 //! equation has roots for some of the values only, or an unknown is free, nothing is said: the interval must be cut.
 
-use super::interval::{Interval, angle_of_box};
+use super::interval::{Interval, Undecided, angle_of_box};
 use super::trigonometric;
 use crate::ir::{Binary, Block, Expr, Node, Program, RootKind, Stmt, Unary, Value};
 use crate::kernel::chain::Frame;
@@ -11,9 +11,6 @@ use crate::kernel::roots::VANISHING;
 
 /// What is known of one variable of a solution, for all values of the interval: an angle around some middle, or a length.
 pub(super) type Bounds = Vec<Interval>;
-
-/// Not the same for all values of the interval, or not known to be.
-pub(super) struct Undecided;
 
 /// Bounds of all solutions, one entry for each branch, in no particular order of branches.
 pub(super) fn branches(

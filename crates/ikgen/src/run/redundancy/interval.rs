@@ -9,6 +9,9 @@ pub(super) struct Interval {
     pub(super) high: f64,
 }
 
+/// Not the same for all values of an interval, or not known to be.
+pub(super) struct Undecided;
+
 impl Interval {
     pub(super) const fn point(x: f64) -> Self {
         Self { low: x, high: x }

@@ -2,8 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::bounds::Undecided;
-use super::interval::Interval;
+use super::interval::{Interval, Undecided};
 
 /// Arcs that the circle is cut into before arcs are halved.
 const ARCS: usize = 32;
