@@ -49,7 +49,8 @@ fn jaws_with(knuckles: bool) -> (Kinematics, Gripper, Vec<(LinkIdx, ConvexParts)
         (LinkIdx::new(2), ConvexParts::new(vec![pad(-0.005)])),
     ];
     if knuckles {
-        let knuckle = |y: f64| box_part(Vector3::new(0.02, 0.01, 0.02)).transformed(&Pose::translation(0.0, y, 0.06));
+        let knuckle =
+            |y: f64| box_part(Vector3::new(0.02, 0.01, 0.02)).transformed(&Pose::translation(0.0, y, 0.06));
         parts.push((LinkIdx::new(3), ConvexParts::new(vec![knuckle(0.04)])));
         parts.push((LinkIdx::new(4), ConvexParts::new(vec![knuckle(-0.03)])));
     }
