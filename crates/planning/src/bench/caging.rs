@@ -63,7 +63,7 @@ pub struct CagingPlace {
     pub firm_grips: Vec<usize>,
     /// The exhaustive search; for arms without free joints.
     pub discrete: Option<Attempt>,
-    /// The randomised search.
+    /// The search in stages: one grip kept, all of them, then at random.
     pub randomized: Attempt,
 }
 
@@ -82,9 +82,9 @@ pub struct CagingReport {
     pub places: Vec<CagingPlace>,
     /// How many of them one and the same firm grip opens, the best one there is.
     pub opened_by_one: usize,
-    /// How many can be opened in some firm grip, by the exhaustive search, and by the randomised one.
+    /// How many can be opened in some firm grip, by the exhaustive search, and by the one in stages.
     pub opened: [usize; 3],
-    /// Of the places that can be opened at all, the share that the randomised search opened within two seconds.
+    /// Of the places that can be opened at all, the share that the search in stages opened within two seconds.
     pub within_two_seconds: f64,
     /// Median and 95th percentile of the seconds of its successes.
     pub seconds: [f64; 2],

@@ -49,6 +49,10 @@ impl<T: ArticulatedTask + ?Sized> ArticulatedTask for FixedGrasp<'_, T> {
         self.task.grasps()
     }
 
+    fn is_usable(&self, grasp: usize) -> bool {
+        self.is_contact(grasp)
+    }
+
     fn is_contact(&self, grasp: usize) -> bool {
         match self.tried {
             Tried::All => true,
@@ -66,6 +70,17 @@ impl<T: ArticulatedTask + ?Sized> ArticulatedTask for FixedGrasp<'_, T> {
             return vec![];
         }
         self.task.solutions(step, grasp, near)
+    }
+
+    fn candidates(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
+        if !self.is_contact(grasp) {
+            return vec![];
+        }
+        self.task.candidates(step, grasp, near)
+    }
+
+    fn free(&mut self, state: &CagedState) -> Result<(), Obstruction> {
+        self.task.free(state)
     }
 
     fn motion(&mut self, from: &CagedState, to: &CagedState) -> Result<(), Obstruction> {

@@ -60,7 +60,7 @@ impl Default for CagedObjectOptions {
             shift: 0.03,
             turn: 0.4,
             longest_motion: 0.04,
-            free_samples: 8,
+            free_samples: 16,
             free_step: 0.05,
             branches: 3,
             drift: 0.01,
@@ -212,26 +212,12 @@ impl<C: EdgeChecker> ArticulatedTask for CagedObject<'_, C> {
     }
 
     fn solutions(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
-        let world_from_tool = self.world_from_tool(step, grasp);
-        let mut found = Vec::new();
-        for free in self.free_values(near) {
-            let reference = near.unwrap_or(&self.rest);
-            let (solutions, _) = self.arm.inverse(&world_from_tool, &free, reference, &mut self.scratch);
-            for q in solutions {
-                let distance = self.arm.space().distance(&q, reference);
-                // What is too far for a motion needs no check.
-                if near.is_none() || distance <= self.longest_motion {
-                    found.push((distance, q));
-                }
-            }
-        }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
         // Over the whole range all count: neighbours at other steps are found among them.
         let most = if near.is_none() { usize::MAX } else { self.options.branches };
         let mut free = Vec::new();
-        for (_, q) in found {
+        for q in self.candidates(step, grasp, near) {
             let state = CagedState { step, grasp, q };
-            if self.checker.state(&self.whole(&state)).is_ok() {
+            if self.free(&state).is_ok() {
                 free.push(state.q);
             }
             if free.len() == most {
@@ -239,6 +225,29 @@ impl<C: EdgeChecker> ArticulatedTask for CagedObject<'_, C> {
             }
         }
         free
+    }
+
+    fn candidates(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
+        let world_from_tool = self.world_from_tool(step, grasp);
+        let mut found = Vec::new();
+        for free in self.free_values(near) {
+            let reference = near.unwrap_or(&self.rest);
+            let (solutions, _) = self.arm.inverse(&world_from_tool, &free, reference, &mut self.scratch);
+            for q in solutions {
+                let distance = self.arm.space().distance(&q, reference);
+                // What is too far for a motion is of no use.
+                if near.is_none() || distance <= self.longest_motion {
+                    found.push((distance, q));
+                }
+            }
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found.into_iter().map(|(_, q)| q).collect()
+    }
+
+    fn free(&mut self, state: &CagedState) -> Result<(), Obstruction> {
+        let whole = self.whole(state);
+        self.checker.state(&whole).map(|_| ())
     }
 
     fn motion(&mut self, from: &CagedState, to: &CagedState) -> Result<(), Obstruction> {

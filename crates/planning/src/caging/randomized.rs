@@ -8,9 +8,14 @@ use robotc_core::rng::Rng;
 use serde::{Deserialize, Serialize};
 
 use super::task::{
-    ArticulatedTask, CagedState, CagingFailure, CagingFailureReason, CagingSolution, CagingStatistics, joined,
+    ArticulatedTask, CagedState, CagingFailure, CagingFailureReason, CagingSolution, CagingStatistics,
 };
 use crate::budget::Budget;
+
+/// States that are added one after the other before they are looked at for collisions: most ways end sooner, out of reach.
+const AHEAD: usize = 8;
+/// Configurations of one grasp and step that are tried from one state, when others turn out to collide.
+const TRIES: usize = 3;
 
 /// Parameters of the search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -48,7 +53,8 @@ pub enum CageStart {
 ///
 /// From each state pairs of a neighbouring step and an adjacent grasp are drawn without replacement, those at the goal in
 /// contact; the arm configuration is the nearest that can be reached. The search fails only when all are used up, or at
-/// its limits.
+/// its limits. States are looked at for collisions some steps after they were drawn: what leads nowhere costs no more than
+/// inverse kinematics.
 pub fn randomized_search<T: ArticulatedTask + ?Sized>(
     task: &mut T,
     start: &CageStart,
@@ -68,7 +74,8 @@ pub fn randomized_search<T: ArticulatedTask + ?Sized>(
     match outcome {
         Ok(node) => Ok(CagingSolution { states: search.path_to(node), statistics: search.statistics }),
         Err(reason) => {
-            let nearest = (0..search.nodes.len()).min_by_key(|&n| search.remaining(n));
+            let looked_at = (0..search.nodes.len()).filter(|&n| search.nodes[n].sight == Sight::Free);
+            let nearest = looked_at.min_by_key(|&n| search.remaining(n));
             let partial = nearest.map(|n| search.path_to(n)).unwrap_or_default();
             Err(CagingFailure { reason, partial, statistics: search.statistics })
         }
@@ -84,6 +91,15 @@ struct Node {
     pool: Vec<(usize, usize)>,
     /// Whether there was a draw.
     drawn: bool,
+    sight: Sight,
+}
+
+/// Whether a state can be reached from the one before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Sight {
+    Unseen,
+    Free,
+    Blocked,
 }
 
 /// A place in the queue; smaller totals come first, then older nodes.
@@ -129,11 +145,12 @@ impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
         let mut roots: Vec<usize> = Vec::new();
         let first = match start {
             CageStart::Step(step) => {
-                roots = (0..self.task.grasps()).collect();
+                roots = (0..self.task.grasps()).filter(|&g| self.task.is_usable(g)).collect();
                 *step
             }
             CageStart::State(state) => {
                 self.add(state.clone(), None);
+                self.nodes[0].sight = Sight::Free;
                 state.step
             }
         };
@@ -145,7 +162,7 @@ impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
                 budget.check().map_err(CagingFailureReason::Interrupted)?;
                 let grasp = roots.swap_remove(rng.below(roots.len()));
                 if first != goal || self.task.is_contact(grasp) {
-                    for q in self.solutions(first, grasp, None) {
+                    for q in self.candidates(first, grasp, None) {
                         self.add(CagedState { step: first, grasp, q }, None);
                     }
                 }
@@ -158,8 +175,13 @@ impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
                     (true, false) => CagingFailureReason::OutOfReach { step: first },
                 });
             };
+            let Some(unseen) = self.unseen(node) else { continue };
             let here = &self.nodes[node].state;
-            if here.step == goal && self.task.is_contact(here.grasp) {
+            let arrived = here.step == goal && self.task.is_contact(here.grasp);
+            if (arrived || unseen.len() >= AHEAD) && !self.look_at(&unseen, budget)? {
+                continue;
+            }
+            if arrived {
                 return Ok(node);
             }
             let mut children = 0;
@@ -199,31 +221,98 @@ impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
             }
         });
         let (step, grasp) = pool.swap_remove(number);
-        for q in self.solutions(step, grasp, Some(&from.q)) {
+        for q in self.candidates(step, grasp, Some(&from.q)) {
             let to = CagedState { step, grasp, q };
-            if self.is_known(&to) {
-                return false;
-            }
-            if joined(&mut *self.task, &from, &to, &mut self.statistics) {
-                self.add(to, Some(node));
-                return true;
+            match self.known(&to, node) {
+                Some(Sight::Blocked) => {}
+                Some(_) => return false,
+                None => {
+                    self.add(to, Some(node));
+                    return true;
+                }
             }
         }
         false
     }
 
-    fn solutions(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
+    fn candidates(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
         self.statistics.inverse_calls += 1;
-        let solutions = self.task.solutions(step, grasp, near);
-        self.statistics.states += solutions.len() as u32;
-        solutions
+        let found = self.task.candidates(step, grasp, near);
+        self.statistics.states += found.len() as u32;
+        let longest = self.task.longest_motion();
+        let reached =
+            |q: &Vec<f64>| near.is_none_or(|near| self.task.arm_space().distance(near, q) <= longest);
+        found.into_iter().filter(reached).collect()
     }
 
-    fn is_known(&self, state: &CagedState) -> bool {
+    /// What became of a state that was drawn before, from anywhere; one that is blocked from elsewhere may do from here.
+    fn known(&self, state: &CagedState, parent: usize) -> Option<Sight> {
         let same = self.options.same * self.task.longest_motion();
-        self.by_step[state.step].iter().map(|&n| &self.nodes[n].state).any(|known| {
+        let known = self.by_step[state.step].iter().copied().filter(|&n| {
+            let known = &self.nodes[n].state;
             known.grasp == state.grasp && self.task.arm_space().distance(&known.q, &state.q) < same
-        })
+        });
+        let mut blocked = None;
+        for node in known {
+            if self.unseen(node).is_some() {
+                return Some(Sight::Free);
+            }
+            if self.nodes[node].parent == Some(parent) && self.nodes[node].sight == Sight::Blocked {
+                blocked = Some(Sight::Blocked);
+            }
+        }
+        blocked
+    }
+
+    /// The states on the way to a node that nobody has looked at, the first one last; `None` when the way is blocked.
+    fn unseen(&self, node: usize) -> Option<Vec<usize>> {
+        let mut unseen = Vec::new();
+        let mut at = Some(node);
+        while let Some(node) = at {
+            match self.nodes[node].sight {
+                Sight::Free => break,
+                Sight::Blocked => return None,
+                Sight::Unseen => unseen.push(node),
+            }
+            at = self.nodes[node].parent;
+        }
+        Some(unseen)
+    }
+
+    /// Looks at states for collisions, the first one being the last; whether all are free.
+    fn look_at(&mut self, unseen: &[usize], budget: &Budget<'_>) -> Result<bool, CagingFailureReason> {
+        for &node in unseen.iter().rev() {
+            budget.check().map_err(CagingFailureReason::Interrupted)?;
+            let (state, parent) = (&self.nodes[node].state, self.nodes[node].parent);
+            let outcome = match parent {
+                Some(parent) => {
+                    self.statistics.motions += 1;
+                    self.task.motion(&self.nodes[parent].state, state)
+                }
+                None => self.task.free(state),
+            };
+            if !self.statistics.passes(outcome) {
+                self.nodes[node].sight = Sight::Blocked;
+                if let Some(parent) = parent {
+                    self.draw_again(node, parent);
+                }
+                return Ok(false);
+            }
+            self.nodes[node].sight = Sight::Free;
+        }
+        Ok(true)
+    }
+
+    /// Another configuration of the grasp and step of a blocked node may do.
+    fn draw_again(&mut self, blocked: usize, parent: usize) {
+        let drawn = (self.nodes[blocked].state.step, self.nodes[blocked].state.grasp);
+        let of_parent =
+            |&&n: &&usize| self.nodes[n].parent == Some(parent) && self.nodes[n].state.grasp == drawn.1;
+        if self.by_step[drawn.0].iter().filter(of_parent).count() < TRIES {
+            self.nodes[parent].pool.push(drawn);
+            let total = self.nodes[parent].cost + self.heuristic(self.nodes[parent].state.step);
+            self.open.push(Entry { total, node: parent });
+        }
     }
 
     fn add(&mut self, state: CagedState, parent: Option<usize>) {
@@ -244,7 +333,7 @@ impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
         let node = self.nodes.len();
         self.by_step[state.step].push(node);
         self.open.push(Entry { total: cost + self.heuristic(state.step), node });
-        self.nodes.push(Node { state, parent, cost, pool, drawn: false });
+        self.nodes.push(Node { state, parent, cost, pool, drawn: false, sight: Sight::Unseen });
     }
 
     fn heuristic(&self, step: usize) -> f64 {

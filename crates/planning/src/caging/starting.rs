@@ -30,6 +30,10 @@ impl<T: ArticulatedTask + ?Sized> ArticulatedTask for StartingAt<'_, T> {
         self.task.grasps()
     }
 
+    fn is_usable(&self, grasp: usize) -> bool {
+        self.task.is_usable(grasp)
+    }
+
     fn is_contact(&self, grasp: usize) -> bool {
         self.task.is_contact(grasp)
     }
@@ -43,6 +47,17 @@ impl<T: ArticulatedTask + ?Sized> ArticulatedTask for StartingAt<'_, T> {
             0 => self.starts.iter().filter(|s| s.grasp == grasp).map(|s| s.q.clone()).collect(),
             _ => self.task.solutions(step, grasp, near),
         }
+    }
+
+    fn candidates(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
+        match step {
+            0 => self.solutions(step, grasp, near),
+            _ => self.task.candidates(step, grasp, near),
+        }
+    }
+
+    fn free(&mut self, state: &CagedState) -> Result<(), Obstruction> {
+        self.task.free(state)
     }
 
     fn motion(&mut self, from: &CagedState, to: &CagedState) -> Result<(), Obstruction> {

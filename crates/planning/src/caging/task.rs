@@ -29,6 +29,11 @@ pub trait ArticulatedTask {
     /// Number of grasps.
     fn grasps(&self) -> usize;
 
+    /// Whether a grasp may be used at all.
+    fn is_usable(&self, _: usize) -> bool {
+        true
+    }
+
     /// Whether a grasp holds the object in contact, so that it cannot leave the goal.
     fn is_contact(&self, grasp: usize) -> bool;
 
@@ -38,7 +43,20 @@ pub trait ArticulatedTask {
     /// Free arm configurations for a grasp: those near to `near`, nearest first, or else all at some resolution.
     fn solutions(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>>;
 
+    /// Like [`solutions`](Self::solutions), but some of them may turn out not to be [free](Self::free): searches look at those
+    /// that lead somewhere.
+    fn candidates(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
+        self.solutions(step, grasp, near)
+    }
+
+    /// Whether a candidate is free.
+    fn free(&mut self, _: &CagedState) -> Result<(), Obstruction> {
+        Ok(())
+    }
+
     /// Whether arm and object may go straight from one state to another of the same or a neighbouring step.
+    ///
+    /// The first state is taken to be free, the other is looked at.
     fn motion(&mut self, from: &CagedState, to: &CagedState) -> Result<(), Obstruction>;
 
     /// Largest motion of the arm between neighbouring states, in its metric: more is a change of branch.
@@ -126,22 +144,22 @@ impl fmt::Display for CagingFailure {
     }
 }
 
-/// Whether two neighbouring states are joined; counts.
-pub(super) fn joined<T: ArticulatedTask + ?Sized>(
-    task: &mut T,
-    from: &CagedState,
-    to: &CagedState,
-    statistics: &mut CagingStatistics,
-) -> bool {
-    if task.arm_space().distance(&from.q, &to.q) > task.longest_motion() {
-        return false;
-    }
-    statistics.motions += 1;
-    match task.motion(from, to) {
-        Ok(()) => true,
-        Err(by) => {
-            *statistics.blocked.entry(by).or_insert(0) += 1;
-            false
+impl CagingStatistics {
+    /// Adds the counts of another search.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.inverse_calls += other.inverse_calls;
+        self.states += other.states;
+        self.motions += other.motions;
+        for (&by, count) in &other.blocked {
+            *self.blocked.entry(by).or_insert(0) += count;
         }
+    }
+
+    /// Counts what stopped a state or a motion; whether nothing did.
+    pub(super) fn passes(&mut self, outcome: Result<(), Obstruction>) -> bool {
+        if let Err(by) = outcome {
+            *self.blocked.entry(by).or_insert(0) += 1;
+        }
+        outcome.is_ok()
     }
 }

@@ -76,6 +76,48 @@ impl ArticulatedTask for PlanarDoor {
     }
 }
 
+/// The same door for searches that look at collisions late; counts the states and motions that they look at.
+struct LazyDoor {
+    door: PlanarDoor,
+    looks: usize,
+}
+
+impl ArticulatedTask for LazyDoor {
+    fn arm_space(&self) -> &Space {
+        self.door.arm_space()
+    }
+    fn steps(&self) -> usize {
+        self.door.steps()
+    }
+    fn grasps(&self) -> usize {
+        self.door.grasps()
+    }
+    fn is_contact(&self, grasp: usize) -> bool {
+        self.door.is_contact(grasp)
+    }
+    fn adjacent(&self, grasp: usize) -> &[usize] {
+        self.door.adjacent(grasp)
+    }
+    fn solutions(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
+        self.looks += 1;
+        self.door.solutions(step, grasp, near)
+    }
+    fn candidates(&mut self, step: usize, grasp: usize, _: Option<&[f64]>) -> Vec<Vec<f64>> {
+        vec![self.door.point(step, grasp)]
+    }
+    fn free(&mut self, state: &CagedState) -> Result<(), Obstruction> {
+        self.looks += 1;
+        self.door.toy.state(&state.q).map(|_| ())
+    }
+    fn motion(&mut self, from: &CagedState, to: &CagedState) -> Result<(), Obstruction> {
+        self.looks += 1;
+        self.door.motion(from, to)
+    }
+    fn longest_motion(&self) -> f64 {
+        self.door.longest_motion()
+    }
+}
+
 /// What every solution must be: from the first step to the last, within the cage, without jumps, in contact at the end.
 fn check<T: ArticulatedTask>(task: &mut T, states: &[CagedState]) {
     let (first, last) = (&states[0], &states[states.len() - 1]);
@@ -125,6 +167,37 @@ fn a_cage_leaves_room_that_a_firm_grasp_has_not() {
     // Without the posts any of them will do.
     let mut open = PlanarDoor::new(2, vec![]);
     assert!(discrete_search(&mut FixedGrasp::new(&mut open), &Budget::unlimited()).is_ok());
+}
+
+#[test]
+fn looking_at_collisions_late_finds_the_same_and_looks_less() {
+    let at = |angle: f64, r: f64| [HINGE[0] + r * angle.cos(), HINGE[1] + r * angle.sin()];
+    let mut outcomes = [0, 0];
+    for case in 0..60 {
+        let mut rng = Seed::new(case).rng();
+        let mut post = || {
+            let [x, y] = at(rng.range(0.1, 1.4), LEVER + rng.range(-0.8, 0.8));
+            let half = rng.range(0.1, 0.5);
+            ([x - half, y - half], [x + half, y + half])
+        };
+        let posts: Vec<_> = (0..4).map(|_| post()).collect();
+        let eager = discrete_search(&mut PlanarDoor::new(2, posts.clone()), &Budget::unlimited());
+        let mut lazy = LazyDoor { door: PlanarDoor::new(2, posts), looks: 0 };
+        let found = discrete_search(&mut lazy, &Budget::unlimited());
+        assert_eq!(found.is_ok(), eager.is_ok(), "case {case}");
+        outcomes[usize::from(found.is_ok())] += 1;
+        let looks = lazy.looks;
+        if let Ok(found) = found {
+            check(&mut lazy, &found.states);
+            // All states that the eager one looks at: 25 grasps at 25 steps.
+            assert!(looks < 25 * 25, "case {case}: {looks}");
+            let drawn = randomized(&mut lazy, case).unwrap_or_else(|e| panic!("case {case}: {e}"));
+            check(&mut lazy, &drawn.states);
+        } else {
+            assert!(randomized(&mut lazy, case).is_err(), "case {case}");
+        }
+    }
+    assert!(outcomes.iter().all(|&count| count >= 5), "{outcomes:?}");
 }
 
 #[test]

@@ -6,10 +6,12 @@ use std::f64::consts::PI;
 use robotc_core::ik::IkSolutions;
 use robotc_core::rng::Rng;
 use robotc_core::robot::{Base, Robot};
+use robotc_core::task::Goal;
 use robotc_core::{Configuration, DofIdx, LinkIdx, Pose, Seed};
 
 use super::free_motion::{FreeMotion, start_rules};
 use super::maker::Maker;
+use super::opening::{ArticleWay, as_grasp};
 use super::picks::hand_check;
 use super::placings::free_values;
 use super::plan::{GoalFailure, SegmentKind, Stage};
@@ -19,6 +21,8 @@ use super::stretch::{fine_checker, state_is_free};
 use crate::budget::Budget;
 use crate::edge::{EdgeChecker, Obstruction};
 use crate::goal::{FixedGoals, GoalDraw, GoalSampler};
+use crate::grasp::Grasp;
+use crate::mechanism::Mechanism;
 use crate::placement::{
     BaseDistribution, BasePlacement, NavigationPosture, PlacementArm, PlacementOptions, PlacementProblem,
     PostureOptions, Prism, PrismBodies,
@@ -75,13 +79,17 @@ impl Manipulation<'_> {
     }
 }
 
-/// Plans a goal that cannot be reached from where the robot stands: folds the arm, drives to one place after the other and does
-/// `there` what is to be done, which gets the situation at that place. `missed` says why it cannot be done from here.
+/// Searches for a way of a door or a drawer from one of many places get this part of the draws.
+const SHARE: u32 = 10;
+
+/// Plans a goal that cannot be reached from where the robot stands: folds the arm, drives to one place after the other from which
+/// `targets` are within reach, and does `there` what is to be done, which gets the situation at that place. `missed` says why it
+/// cannot be done from here.
 pub(super) fn plan_driving(
     cx: &GoalContext<'_>,
     scene: &Scene,
     q: &Configuration,
-    missed: Box<GoalFailure>,
+    (missed, targets): (Box<GoalFailure>, Targets),
     budget: &Budget<'_>,
     seed: Seed,
     there: &mut dyn FnMut(&GoalContext<'_>, &Configuration, Seed) -> Result<Reached, Box<GoalFailure>>,
@@ -93,9 +101,11 @@ pub(super) fn plan_driving(
     let fold = fold(cx, scene, q, &drive, budget, seed.split("fold"))?;
     let mut folded = q.clone();
     folded.set(cx.problem.arm.dofs(), &fold[fold.len() - 1]);
-    let targets = Targets::of(cx, scene, seed.split("destinations"));
+    let mut quick = cx.options.clone();
+    quick.caging_search.max_draws /= SHARE;
     let arms = [PlacementArm { cost: 1.0, grasps: targets.grasps.clone() }];
-    let mut standing = Standing { cx, scene, drive: &drive, folded: &folded, rng: seed.split("free").rng() };
+    let (hands, rng) = (&targets.hands, seed.split("free").rng());
+    let mut standing = Standing { cx, scene, hands, drive: &drive, folded: &folded, rng };
     let mut bases = ReachedBases { cx, drive: &drive, targets: &targets };
     let options = PlacementOptions { places: 20, max_places: 4000 };
     let mut places = BasePlacement::new(&mut standing, &mut bases, &arms, options, seed.split("places"));
@@ -120,7 +130,7 @@ pub(super) fn plan_driving(
         let mut stands = folded.clone();
         stands.set(&drive.dofs, &path[path.len() - 1]);
         let arm = cx.problem.arm_at(&stands);
-        let here = GoalContext { problem: Manipulation { arm: &arm, ..cx.problem }, ..*cx };
+        let here = GoalContext { problem: Manipulation { arm: &arm, ..cx.problem }, options: &quick, ..*cx };
         match there(&here, &stands, seed) {
             Ok(reached) => {
                 let mut made = Maker::new(cx, q);
@@ -208,28 +218,47 @@ fn drive_to(
 }
 
 /// Where the tool has to be able to get to.
-struct Targets {
-    /// `world_from_tool` of each grasp of the object where it stands.
+pub(super) struct Targets {
+    /// Grasps of what is there now.
+    hands: Vec<Grasp>,
+    /// `world_from_tool` of each, with the object where it is.
     grasps: Vec<Pose>,
-    /// `object_from_tool` of each, in the same order.
-    object_from_tool: Vec<Pose>,
-    /// Places for the object.
+    /// The tool in the frame that `destinations` are of, for each, in the same order.
+    part_from_tool: Vec<Pose>,
+    /// Where the frame gets to: the grasp has to be within reach there, too.
     destinations: Vec<Pose>,
 }
 
 impl Targets {
-    fn of(cx: &GoalContext<'_>, scene: &Scene, seed: Seed) -> Self {
-        let set = cx.problem.grasps[cx.object];
+    /// Of an object that is to be placed.
+    pub(super) fn of_grasps(cx: &GoalContext<'_>, scene: &Scene, seed: Seed) -> Self {
+        let hands = cx.problem.grasps[cx.object].grasps.clone();
         let world_from_object = scene.world_from_body(cx.body());
-        let object_from_tool: Vec<Pose> = set.grasps.iter().map(|grasp| grasp.object_from_tool).collect();
+        let part_from_tool: Vec<Pose> = hands.iter().map(|grasp| grasp.object_from_tool).collect();
         let destinations = match cx.goal() {
-            robotc_core::task::Goal::Place { destination, .. } => {
+            Goal::Place { destination, .. } => {
                 super::destination_poses(destination, cx.options.destinations, &mut seed.rng())
             }
-            robotc_core::task::Goal::Open { .. } => vec![],
+            Goal::Open { .. } => vec![],
         };
-        let grasps = object_from_tool.iter().map(|tool| world_from_object * tool).collect();
-        Self { grasps, object_from_tool, destinations }
+        let grasps = part_from_tool.iter().map(|tool| world_from_object * tool).collect();
+        Self { hands, grasps, part_from_tool, destinations }
+    }
+
+    /// Of an article that is to be moved: its handle goes all the way.
+    pub(super) fn of_grips(cx: &GoalContext<'_>, scene: &Scene, way: ArticleWay) -> Self {
+        let article = &cx.problem.task.articles[way.article];
+        let cages = cx.problem.cages.get(way.article).copied().unwrap_or_default();
+        let usable = cages.iter().filter(|cage| cage.hold.moves(way.to > way.from));
+        let part_from_tool: Vec<Pose> = usable.clone().map(|cage| cage.grasp.part_from_tool).collect();
+        let Some(mechanism) = Mechanism::of_article(article) else {
+            return Self { hands: vec![], grasps: vec![], part_from_tool: vec![], destinations: vec![] };
+        };
+        let now = mechanism.world_from_part(way.from);
+        let hands = usable.map(|cage| as_grasp(cx, scene, cage, &now)).collect();
+        let grasps = part_from_tool.iter().map(|tool| now * tool).collect();
+        let at = |share: f64| mechanism.world_from_part(way.from + share * (way.to - way.from));
+        Self { hands, grasps, part_from_tool, destinations: [0.5, 1.0].map(at).into() }
     }
 }
 
@@ -271,9 +300,9 @@ impl BaseDistribution for ReachedBases<'_, '_> {
             if self.density(&base, world_from_tool) <= 0.0 {
                 continue;
             }
-            let Self { targets: Targets { object_from_tool, destinations, .. }, .. } = self;
+            let Self { targets: Targets { part_from_tool, destinations, .. }, .. } = self;
             let puts_down =
-                |destination: &Pose| self.density(&base, &(destination * object_from_tool[grasp])) > 0.0;
+                |destination: &Pose| self.density(&base, &(destination * part_from_tool[grasp])) > 0.0;
             if destinations.is_empty() || puts_down(&destinations[rng.below(destinations.len())]) {
                 return Some(base);
             }
@@ -287,6 +316,8 @@ impl BaseDistribution for ReachedBases<'_, '_> {
 struct Standing<'c, 'a> {
     cx: &'c GoalContext<'a>,
     scene: &'c Scene,
+    /// What `grasps` of the targets are made of.
+    hands: &'c [Grasp],
     drive: &'c Drive,
     folded: &'c Configuration,
     rng: Rng,
@@ -302,7 +333,7 @@ impl Standing<'_, '_> {
 
 impl PlacementProblem for Standing<'_, '_> {
     fn grasp_is_free(&mut self, _: usize, grasp: usize) -> Result<(), Obstruction> {
-        let grasp = &self.cx.problem.grasps[self.cx.object].grasps[grasp];
+        let grasp = &self.hands[grasp];
         let world_from_tool = self.scene.world_from_body(self.cx.body()) * grasp.object_from_tool;
         hand_check(self.cx, self.scene, grasp, &world_from_tool).map_err(|_| Obstruction::Constraint)
     }

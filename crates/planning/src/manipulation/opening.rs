@@ -161,6 +161,25 @@ pub(crate) fn article_steps(
     Mechanism::steps(from, to, count + 1).into_iter().map(step).collect()
 }
 
+/// A grip as a grasp of the handle, with the article's part at `world_from_part` in `scene`.
+pub(super) fn as_grasp(cx: &GoalContext<'_>, scene: &Scene, cage: &Cage, world_from_part: &Pose) -> Grasp {
+    let handle_from_part = scene.world_from_body(cx.body()).inv_mul(world_from_part);
+    let object_from_tool = handle_from_part * cage.grasp.part_from_tool;
+    let approach = object_from_tool.rotation * cx.gripper().approach_in_tool.into_inner();
+    Grasp {
+        preshape: cage.preshape,
+        object_from_tool,
+        approach_in_object: Unit::new_normalize(approach),
+        standoff: 0.0,
+        closed: cage.loose.clone(),
+        contacts: vec![],
+        epsilon: 0.0,
+        volume: None,
+        steadiness: None,
+        score: 0.0,
+    }
+}
+
 /// Motions before and after that of the article.
 struct Motions {
     /// The arm makes way for the fingers to open, where they cannot do so at the end of the reach.
@@ -312,7 +331,7 @@ impl Opening<'_, '_, '_> {
             }
             let Some(grip) = self.order.pop() else { return Ok(None) };
             self.looked_at += 1;
-            let grasp = self.as_grasp(grip, &self.world_from_part, self.scene);
+            let grasp = as_grasp(self.cx, self.scene, self.cages[grip], &self.world_from_part);
             let world_from_tool = self.world_from_part * self.cages[grip].grasp.part_from_tool;
             if let Err((filter, cause)) = hand_check(self.cx, self.scene, &grasp, &world_from_tool) {
                 self.rejections.add_because(filter, cause);
@@ -324,27 +343,6 @@ impl Opening<'_, '_, '_> {
             }
             let branches = solutions.into_iter().take(self.cx.options.branches);
             self.branches = branches.rev().map(|q| CagedState { step: 0, grasp: grip, q }).collect();
-        }
-    }
-
-    /// A grip as a grasp of the handle, with the article's part at `world_from_part` in `scene`.
-    fn as_grasp(&self, grip: usize, world_from_part: &Pose, scene: &Scene) -> Grasp {
-        let cage = self.cages[grip];
-        let handle_from_part = scene.world_from_body(self.cx.body()).inv_mul(world_from_part);
-        let object_from_tool = handle_from_part * cage.grasp.part_from_tool;
-        Grasp {
-            preshape: cage.preshape,
-            object_from_tool,
-            approach_in_object: Unit::new_normalize(
-                object_from_tool.rotation * self.cx.gripper().approach_in_tool.into_inner(),
-            ),
-            standoff: 0.0,
-            closed: cage.loose.clone(),
-            contacts: vec![],
-            epsilon: 0.0,
-            volume: None,
-            steadiness: None,
-            score: 0.0,
         }
     }
 

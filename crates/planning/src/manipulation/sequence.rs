@@ -8,7 +8,7 @@ use robotc_core::{BodyIdx, Configuration, Pose, Seed};
 use thiserror::Error;
 
 use super::destinations::destination_poses;
-use super::driving::plan_driving;
+use super::driving::{Targets, plan_driving};
 use super::free_motion::{FreeMotion, start_rules};
 use super::maker::Maker;
 use super::opening::{ArticleWay, plan_opening};
@@ -130,12 +130,20 @@ pub fn pick_and_place(
                             plan_goal(cx, &scene, q, budget, seed, &mut ())
                         };
                         let seed = seed.split("drive");
-                        plan_driving(&cx, &scene, &q, missed, budget, seed, &mut there)
+                        let targets = Targets::of_grasps(&cx, &scene, seed.split("destinations"));
+                        plan_driving(&cx, &scene, &q, (missed, targets), budget, seed, &mut there)
                     })
                 }
                 Goal::Open { article, to } => {
                     let way = ArticleWay { article, from: values[article], to };
-                    plan_opening(&cx, &scene, &q, way, budget, seed, observer)
+                    plan_opening(&cx, &scene, &q, way, budget, seed, observer).or_else(|missed| {
+                        let mut there = |cx: &GoalContext<'_>, q: &Configuration, seed: Seed| {
+                            plan_opening(cx, &scene, q, way, budget, seed, &mut ())
+                        };
+                        let seed = seed.split("drive");
+                        let targets = Targets::of_grips(&cx, &scene, way);
+                        plan_driving(&cx, &scene, &q, (missed, targets), budget, seed, &mut there)
+                    })
                 }
             };
             match reached {

@@ -63,8 +63,8 @@ impl Caged<'_> {
             let seedling = Seedling { part_from_tool, values: &loose };
             if let Some(hold) = self.hold(&seedling, seed) {
                 let tight = Seedling { part_from_tool, values: &closed.closed };
-                let contact = [1.0, -1.0].iter().all(|way| self.stops(&tight, way * self.options.play, 1));
-                let grasp = CageGrasp { part_from_tool, contact: contact && hold == CageHold::Both };
+                let contact = hold == CageHold::Both && self.is_tight(&tight);
+                let grasp = CageGrasp { part_from_tool, contact };
                 return Some(Cage { grasp, hold, preshape: start.preshape, loose, closed: closed.closed });
             }
         }
@@ -80,9 +80,14 @@ impl Caged<'_> {
         Some(Cage { grasp, hold, preshape: start.preshape, loose: open.clone(), closed: open.clone() })
     }
 
+    /// Whether a closed hand lets the part move neither way.
+    pub(super) fn is_tight(&self, closed: &Seedling) -> bool {
+        [1.0, -1.0].iter().all(|way| self.stops(closed, way * self.options.play, 1))
+    }
+
     /// In which directions the part is stopped by this hand and by all that are jittered from it; `None` when in none, or when
     /// there is no room to jitter.
-    fn hold(&self, seedling: &Seedling, seed: Seed) -> Option<CageHold> {
+    pub(super) fn hold(&self, seedling: &Seedling, seed: Seed) -> Option<CageHold> {
         if self.touches(seedling, 0.0) {
             return None;
         }
@@ -149,7 +154,7 @@ impl Caged<'_> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use nalgebra::Unit;
     use robotc_core::geom::box_part;
 
@@ -157,13 +162,13 @@ mod tests {
     use crate::kinds::grip::jaws::jaws;
 
     /// A bar along y, 15 cm in front of a panel that slides along z (a drawer): the hand comes along -z.
-    fn drawer() -> ConvexParts {
+    pub(in crate::kinds::caging_set) fn drawer() -> ConvexParts {
         let bar = box_part(Vector3::new(0.02, 0.2, 0.02)).transformed(&Pose::translation(0.0, 0.0, 0.16));
         let panel = box_part(Vector3::new(0.4, 0.4, 0.02));
         ConvexParts::new(vec![bar, panel])
     }
 
-    fn grip(way: Vector3<f64>, tool: [f64; 3], jaw: Vector3<f64>) -> Start {
+    pub(in crate::kinds::caging_set) fn grip(way: Vector3<f64>, tool: [f64; 3], jaw: Vector3<f64>) -> Start {
         let z = Unit::new_normalize(way);
         let x = jaw.cross(&z);
         let rotation = nalgebra::Rotation3::from_basis_unchecked(&[x, jaw, z.into_inner()]);
@@ -172,7 +177,12 @@ mod tests {
         Start { object_from_tool, preshape: 0, standoff: 0.005 }
     }
 
-    fn attempt(parts: &ConvexParts, motion: MechanismMotion, start: &Start) -> Option<Cage> {
+    /// A test by the hand of the tests.
+    pub(in crate::kinds::caging_set) fn with_jaws<T>(
+        parts: &ConvexParts,
+        motion: MechanismMotion,
+        test: impl FnOnce(&Caged<'_>) -> T,
+    ) -> T {
         let (kinematics, gripper, shapes) = jaws();
         let hand = Hand::new(&kinematics, &gripper, |l| {
             shapes.iter().find(|(link, _)| *link == l).map(|(_, parts)| parts)
@@ -186,7 +196,11 @@ mod tests {
             needed: 20,
             tries: 100,
         };
-        Caged { hand: &hand, parts, motion, options: &options }.attempt(start, Seed::new(1))
+        test(&Caged { hand: &hand, parts, motion, options: &options })
+    }
+
+    fn attempt(parts: &ConvexParts, motion: MechanismMotion, start: &Start) -> Option<Cage> {
+        with_jaws(parts, motion, |caged| caged.attempt(start, Seed::new(1)))
     }
 
     #[test]

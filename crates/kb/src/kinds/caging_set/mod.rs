@@ -2,6 +2,8 @@
 
 #[cfg(feature = "build")]
 mod cage;
+#[cfg(feature = "build")]
+mod explore;
 
 use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 use robotc_core::Pose;
@@ -25,7 +27,8 @@ use crate::record::Parts;
 /// The hand comes in on the handle as for a grasp, closes, and opens again a little. It cages when the article cannot move by
 /// more than `slack` without hitting the hand, there and wherever the hand is jittered to (thesis section 4.2.2, algorithm
 /// 4.2; Diankov, Srinivasa, Ferguson and Kuffner, "Manipulation planning with caging grasps", 2008). What
-/// stops the article in one direction only can push or pull it (section 3.4).
+/// stops the article in one direction only can push or pull it (section 3.4). More grips are found by moving those a little,
+/// over and over: as far as the hand can turn and shift round the handle, without gaps between neighbours.
 pub struct CagingSet;
 
 /// What a caging set is computed from.
@@ -70,6 +73,15 @@ crate::parameters! {
         needed: u32 [""] in 0..=10000 = 20;
         /// Number of jittered hands that are drawn to find them: N of the thesis.
         tries: u32 [""] in 0..=100000 = 100;
+        /// Tries of moving a grip that is known a little, to find more that it can change to.
+        explored: u32 [""] in 0..=1000000 = 0;
+        /// Grips from approaches that these start from, drawn at random from those in contact, all others being left
+        /// out; 0 for all.
+        explored_from: u32 [""] in 0..=100000 = 0;
+        /// Farthest that a grip is shifted in a try.
+        explored_shift: f64 ["m"] in 0.0001..=0.1 = 0.015;
+        /// Farthest that a grip is turned in a try.
+        explored_turn: f64 ["rad"] in 0.001..=1.0 = 0.25;
         /// Most grips that are kept of each kind of hold.
         most: u32 [""] in 1..=100000 = 200;
     }
@@ -78,7 +90,7 @@ crate::parameters! {
 impl Kind for CagingSet {
     const NAME: &'static str = "caging_set";
     const FORMAT: u32 = 1;
-    const ALGORITHM: u32 = 1;
+    const ALGORITHM: u32 = 2;
     const PORTABILITY: Portability = Portability::Portable;
     const DOC: &'static str = "The ways a gripper can hold a door or drawer loosely, so that it cannot get away: cages, pulls and pushes.";
 
@@ -207,6 +219,7 @@ mod build {
     use robotc_planning::mechanism::{Mechanism as Axis, MechanismMotion};
 
     use super::cage::{CageOptions, Caged, Seedling};
+    use super::explore::ExploreOptions;
     use super::*;
     use crate::kind::{Build, BuildError, Context};
     use crate::kinds::grip::surface::{ApproachOptions, approaches};
@@ -283,9 +296,24 @@ mod build {
                 let seed = context.seed().split("jitter").at(i as u64);
                 caged.attempt(&approach.start(&hand.gripper().approach_in_tool), seed)
             })?;
+            let mut found: Vec<Cage> = found.into_iter().flatten().collect();
+            if parameters.explored_from > 0 {
+                found.retain(|cage| cage.hold == CageHold::Both && cage.grasp.contact);
+                context.seed().split("first").rng().shuffle(&mut found);
+                found.truncate(parameters.explored_from as usize);
+            }
+            let explore = ExploreOptions {
+                tries: parameters.explored,
+                shift: parameters.explored_shift,
+                turn: parameters.explored_turn,
+            };
+            explore.explore(&caged, &mut found, context.seed().split("explored"), |count, make| {
+                let numbers: Vec<u32> = (0..count).collect();
+                context.map(&numbers, |number, _| make(number))
+            })?;
             let mut cages = Vec::new();
             for hold in [CageHold::Both, CageHold::Opening, CageHold::Closing] {
-                let mut of_hold: Vec<&Cage> = found.iter().flatten().filter(|c| c.hold == hold).collect();
+                let mut of_hold: Vec<&Cage> = found.iter().filter(|c| c.hold == hold).collect();
                 of_hold.sort_by_key(|c| !c.grasp.contact);
                 cages.extend(of_hold.into_iter().take(parameters.most as usize).cloned());
             }
