@@ -1,5 +1,5 @@
-//! `cargo xtask ik-zoo [FOLDER] [POSES]`: compiles and proves inverse kinematics for every arm of a folder, prints the table and
-//! stores it as `docs/campaigns/zoo.md`.
+//! `cargo xtask ik-zoo [FOLDER] [POSES] [FILTER] [--singular=N] [--types=N]`: compiles and proves inverse kinematics for every arm of a
+//! folder, prints the tables and stores them as `docs/campaigns/zoo.md`.
 
 use std::process::{Command, Stdio};
 
@@ -13,6 +13,7 @@ pub(crate) fn run(args: &[String]) -> anyhow::Result<()> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
     let output = Command::new(cargo)
         .args(["run", "--release", "-q", "-p", "robotc-ikgen", "--example", "zoo", "--", folder, poses])
+        .args(args.iter().skip(2))
         .stderr(Stdio::inherit())
         .output()
         .context("could not start cargo")?;

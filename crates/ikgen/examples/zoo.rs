@@ -1,9 +1,10 @@
 //! Compiles every arm of a folder with an `INDEX.tsv`, proves it, and prints a table in Markdown: what was solved of each set,
 //! then class and time of each arm, or the reason why it is refused. `cargo xtask ik-zoo` stores it.
 //!
-//! `cargo run --release -p robotc-ikgen --example zoo -- FOLDER [POSES] [FILTER] [--detail] [--no-snap] [--singular=N]`: only arms whose
-//! name contains FILTER; details are all sets, the search and the program; without snapping arms are solved as they are described; the
-//! random set has POSES, the singular ones N, or as many. Robots of the thesis that have no URDF are those of the tests.
+//! `cargo run --release -p robotc-ikgen --example zoo -- FOLDER [POSES] [FILTER] [--detail] [--no-snap] [--singular=N] [--types=N]`: only
+//! arms whose name contains FILTER; details are all sets, the search and the program; without snapping arms are solved as they are
+//! described; the random set has POSES, the singular ones N, or as many; a second table has all parameterisations of some arms, N random
+//! poses each. Robots of the thesis that have no URDF are those of the tests.
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
@@ -27,8 +28,14 @@ fn main() {
     let poses = arguments.get(1).and_then(|n| n.parse().ok()).unwrap_or(200);
     let filter = arguments.get(2).map_or("", String::as_str);
     let mut arms: Vec<(String, Report)> = Vec::new();
+    let mut types: Vec<(String, Vec<String>)> = Vec::new();
+    let number = |option: &str| options.iter().find_map(|o| o.strip_prefix(option)?.parse::<usize>().ok());
+    let of_types = number("--types=");
     for (name, chain) in collection::arms(folder, filter) {
         eprintln!("{name}");
+        if let Some(poses) = of_types.filter(|_| OF_TYPES.contains(&name.as_str())) {
+            types.push((name.clone(), GoalType::ALL.map(|goal| parameterised(&chain, goal, poses)).to_vec()));
+        }
         arms.push((name, arm(&chain, poses, &options)));
     }
     for chain in arms::of_the_thesis().into_iter().filter(|chain| chain.name.contains(filter)) {
@@ -37,6 +44,52 @@ fn main() {
     }
     summary(&arms, poses);
     table(&arms);
+    if let Some(poses) = of_types {
+        table_of_types(&types, poses);
+    }
+}
+
+/// Arms of which all parameterisations are tried: four, five, six and seven joints, of different classes.
+const OF_TYPES: [&str; 10] = [
+    "trossen_px100",
+    "kawasaki_duaro",
+    "neuronics_katana_450_6m90a",
+    "fanuc_lrmate200ic5h",
+    "kuka_kr5_arc",
+    "ur_ur5e",
+    "ufactory_xarm6",
+    "franka_panda",
+    "kuka_lwr4",
+    "fetch_fetch",
+];
+
+/// What came of a parameterisation of an arm.
+fn parameterised(chain: &SerialChain, goal: GoalType, poses: usize) -> String {
+    let Ok(compiled) = compile(chain, &Options { goal, ..Options::default() }) else { return "-".into() };
+    let clock = Instant::now();
+    let now = || clock.elapsed().as_secs_f64();
+    let report = prove(&compiled, 0.0, &ProofOptions { poses, seed: 3 }, &now);
+    let Some(set) = report.set("random") else { return "-".into() };
+    let wrong = if set.wrong > 0 { format!(", {} wrong", set.wrong) } else { String::new() };
+    if set.recovered == set.poses && set.solved == set.poses {
+        format!("all{wrong}")
+    } else {
+        format!("{} / {}{wrong}", set.solved, set.recovered)
+    }
+}
+
+fn table_of_types(arms: &[(String, Vec<String>)], poses: usize) {
+    println!("\n## Parameterisations\n");
+    println!(
+        "{poses} random poses each: *all*, where each was solved and its joint vector among the answers, else how many were solved and how \
+         many recovered; - where the type does not suit the chain.\n"
+    );
+    let names: Vec<&str> = arms.iter().map(|(name, _)| name.as_str()).collect();
+    println!("| type | {} |\n|---|{}", names.join(" | "), "---|".repeat(names.len()));
+    for (k, goal) in GoalType::ALL.into_iter().enumerate() {
+        let cells: Vec<&str> = arms.iter().map(|(_, cells)| cells[k].as_str()).collect();
+        println!("| {} | {} |", goal.name(), cells.join(" | "));
+    }
 }
 
 fn arm(chain: &SerialChain, poses: usize, options: &[String]) -> Report {
@@ -106,13 +159,16 @@ fn table(arms: &[(String, Report)]) {
         "*Missing*: poses of a set without a solution, and random joint vectors that were not among the answers. Times are those of a"
     );
     println!(
-        "random pose: all solutions, with the check, by the bytecode. *Generated in* counts processor time.\n"
+        "random pose: all solutions, with the check, by the bytecode; *singular* is the slowest singular set, as a multiple. *Generated in* \
+         counts processor time.\n"
     );
-    println!("| arm | class, or why it is refused | missing | wrong | median | generated in | Rust |");
-    println!("|---|---|---|---|---|---|---|");
+    println!(
+        "| arm | class, or why it is refused | missing | wrong | median | singular | generated in | Rust |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
     for (name, r) in arms {
         if r.sets.is_empty() {
-            println!("| {name} | refused: {} | | | | {:.2} s | |", r.reason, r.generation_s);
+            println!("| {name} | refused: {} | | | | | {:.2} s | |", r.reason, r.generation_s);
             continue;
         }
         let mut missing: Vec<String> = Vec::new();
@@ -126,8 +182,11 @@ fn table(arms: &[(String, Report)]) {
         }
         let wrong: usize = r.sets.iter().map(|s| s.wrong).sum();
         let median = r.set("random").map_or(0.0, |s| s.median_ns / 1e3);
+        // A set of one pose has no median to speak of.
+        let singular = r.sets.iter().filter(|s| s.name != "random" && s.poses > 1).map(|s| s.median_ns / 1e3);
+        let slowest = singular.fold(0.0, f64::max) / median;
         println!(
-            "| {name} | {} | {} | {wrong} | {median:.1} us | {:.2} s | {} KB |",
+            "| {name} | {} | {} | {wrong} | {median:.1} us | {slowest:.1}x | {:.2} s | {} KB |",
             r.class,
             missing.join(", "),
             r.generation_s,

@@ -77,6 +77,7 @@ pub mod ir;
 #[cfg(feature = "generate")]
 mod jacobian;
 pub mod kernel;
+mod orders;
 pub mod passes;
 #[cfg(feature = "generate")]
 pub mod report;

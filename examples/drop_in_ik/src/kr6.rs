@@ -28,369 +28,369 @@ const SLACK: f64 = 0.0;
 
 /// The chain as described. Give [`solve_on`] a calibrated one in its place.
 pub const DESCRIBED: Chain = Chain {
-    links: [
-        Link {
-            previous_from_joint: Frame {
-                rotation: [
-                    [1.0, 0.0, 0.0],
-                    [0.0, -1.0, -1.2246467991473532e-16],
-                    [0.0, 1.2246467991473532e-16, -1.0],
-                ],
-                position: [0.0, 0.0, 0.4],
-            },
-            slides: false,
-            variable: 0,
-            ratio: 1.0,
-        },
-        Link {
-            previous_from_joint: Frame {
-                rotation: [
-                    [1.0, 0.0, -0.0],
-                    [-0.0, -2.220446049250313e-16, -1.0],
-                    [0.0, 1.0, -2.220446049250313e-16],
-                ],
-                position: [0.025, 0.0, 0.0],
-            },
-            slides: false,
-            variable: 1,
-            ratio: 1.0,
-        },
-        Link {
-            previous_from_joint: Frame {
-                rotation: [
-                    [1.0, 0.0, 0.0],
-                    [0.0, 1.0, 0.0],
-                    [0.0, 0.0, 1.0],
-                ],
-                position: [0.45499999999999996, 0.0, 0.0],
-            },
-            slides: false,
-            variable: 2,
-            ratio: 1.0,
-        },
-        Link {
-            previous_from_joint: Frame {
-                rotation: [
-                    [2.220446049250313e-16, 0.0, -1.0],
-                    [-1.0, 2.220446049250313e-16, -2.220446049250313e-16],
-                    [2.220446049250313e-16, 1.0, 0.0],
-                ],
-                position: [0.42000000000000004, -0.034999999999999976, 6.938893903907228e-18],
-            },
-            slides: false,
-            variable: 3,
-            ratio: 1.0,
-        },
-        Link {
-            previous_from_joint: Frame {
-                rotation: [
-                    [2.220446049250313e-16, -1.0, 2.220446049250313e-16],
-                    [0.0, 2.220446049250313e-16, 1.0],
-                    [-1.0, -2.220446049250313e-16, 0.0],
-                ],
-                position: [0.0, 0.0, 0.0],
-            },
-            slides: false,
-            variable: 4,
-            ratio: 1.0,
-        },
-        Link {
-            previous_from_joint: Frame {
-                rotation: [
-                    [2.220446049250313e-16, 0.0, -1.0],
-                    [-1.0, 2.220446049250313e-16, -2.220446049250313e-16],
-                    [2.220446049250313e-16, 1.0, 0.0],
-                ],
-                position: [0.07999999999999996, 0.0, 0.0],
-            },
-            slides: false,
-            variable: 5,
-            ratio: 1.0,
-        },
-    ],
-    last_from_tip: Frame {
-        rotation: [
-            [-1.0, 0.0, 4.440892098500626e-16],
-            [0.0, 1.0, 0.0],
-            [-4.440892098500626e-16, 0.0, -1.0],
-        ],
-        position: [0.0, 0.0, 0.0],
-    },
+	links: [
+		Link {
+			previous_from_joint: Frame {
+				rotation: [
+					[1.0, 0.0, 0.0],
+					[0.0, -1.0, -1.2246467991473532e-16],
+					[0.0, 1.2246467991473532e-16, -1.0],
+				],
+				position: [0.0, 0.0, 0.4],
+			},
+			slides: false,
+			variable: 0,
+			ratio: 1.0,
+		},
+		Link {
+			previous_from_joint: Frame {
+				rotation: [
+					[1.0, 0.0, -0.0],
+					[-0.0, -2.220446049250313e-16, -1.0],
+					[0.0, 1.0, -2.220446049250313e-16],
+				],
+				position: [0.025, 0.0, 0.0],
+			},
+			slides: false,
+			variable: 1,
+			ratio: 1.0,
+		},
+		Link {
+			previous_from_joint: Frame {
+				rotation: [
+					[1.0, 0.0, 0.0],
+					[0.0, 1.0, 0.0],
+					[0.0, 0.0, 1.0],
+				],
+				position: [0.45499999999999996, 0.0, 0.0],
+			},
+			slides: false,
+			variable: 2,
+			ratio: 1.0,
+		},
+		Link {
+			previous_from_joint: Frame {
+				rotation: [
+					[2.220446049250313e-16, 0.0, -1.0],
+					[-1.0, 2.220446049250313e-16, -2.220446049250313e-16],
+					[2.220446049250313e-16, 1.0, 0.0],
+				],
+				position: [0.42000000000000004, -0.034999999999999976, 6.938893903907228e-18],
+			},
+			slides: false,
+			variable: 3,
+			ratio: 1.0,
+		},
+		Link {
+			previous_from_joint: Frame {
+				rotation: [
+					[2.220446049250313e-16, -1.0, 2.220446049250313e-16],
+					[0.0, 2.220446049250313e-16, 1.0],
+					[-1.0, -2.220446049250313e-16, 0.0],
+				],
+				position: [0.0, 0.0, 0.0],
+			},
+			slides: false,
+			variable: 4,
+			ratio: 1.0,
+		},
+		Link {
+			previous_from_joint: Frame {
+				rotation: [
+					[2.220446049250313e-16, 0.0, -1.0],
+					[-1.0, 2.220446049250313e-16, -2.220446049250313e-16],
+					[2.220446049250313e-16, 1.0, 0.0],
+				],
+				position: [0.07999999999999996, 0.0, 0.0],
+			},
+			slides: false,
+			variable: 5,
+			ratio: 1.0,
+		},
+	],
+	last_from_tip: Frame {
+		rotation: [
+			[-1.0, 0.0, 4.440892098500626e-16],
+			[0.0, 1.0, 0.0],
+			[-4.440892098500626e-16, 0.0, -1.0],
+		],
+		position: [0.0, 0.0, 0.0],
+	},
 };
 
 /// Constants of a chain: every joint axis is the z axis of its frame.
 pub struct Chain {
-    /// Moving joints, base to tip.
-    pub links: [Link; 6],
-    /// Pose of the tip in the frame after the last joint.
-    pub last_from_tip: Frame,
+	/// Moving joints, base to tip.
+	pub links: [Link; 6],
+	/// Pose of the tip in the frame after the last joint.
+	pub last_from_tip: Frame,
 }
 
 /// The solutions of one pose, in the order in which they were found.
 #[derive(Clone, Debug)]
 pub struct Solutions {
-    values: [[f64; VARIABLES]; CAPACITY],
-    len: usize,
+	values: [[f64; VARIABLES]; CAPACITY],
+	len: usize,
 }
 
 impl Solutions {
-    /// No solutions.
-    pub const fn new() -> Self {
-        Self { values: [[0.0; VARIABLES]; CAPACITY], len: 0 }
-    }
+	/// No solutions.
+	pub const fn new() -> Self {
+		Self { values: [[0.0; VARIABLES]; CAPACITY], len: 0 }
+	}
 
-    /// The solutions, each one value for each variable.
-    pub fn as_slice(&self) -> &[[f64; VARIABLES]] {
-        &self.values[..self.len]
-    }
+	/// The solutions, each one value for each variable.
+	pub fn as_slice(&self) -> &[[f64; VARIABLES]] {
+		&self.values[..self.len]
+	}
 }
 
 /// Pose of the tip at these variable values.
 pub fn forward(values: &[f64; VARIABLES]) -> Frame {
-    arm(&DESCRIBED).forward_values(values)
+	arm(&DESCRIBED).forward_values(values)
 }
 
 /// All solutions for a pose of the chain as described, given the values of the variables in [`FREE`].
 pub fn solve(base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {
-    solve_with(&DESCRIBED, true, base_from_tip, free, out);
+	solve_with(&DESCRIBED, true, base_from_tip, free, out);
 }
 
 /// How joints can move together and leave the tip where it is, through a solution of a pose: where axes have lined up. None at a
 /// regular pose.
 pub fn families(base_from_tip: &Frame, solution: &[f64; VARIABLES]) -> Families {
-    families_of(&arm(&DESCRIBED), base_from_tip, solution)
+	families_of(&arm(&DESCRIBED), base_from_tip, solution)
 }
 
 /// The member of a family through a solution at `t`, angles not brought back to (-pi, pi]; nothing outside of its interval.
 pub fn family_member(
-    base_from_tip: &Frame,
-    solution: &[f64; VARIABLES],
-    family: &Family,
-    t: f64,
+	base_from_tip: &Frame,
+	solution: &[f64; VARIABLES],
+	family: &Family,
+	t: f64,
 ) -> Option<[f64; VARIABLES]> {
-    let mut member = *solution;
-    member_of(&arm(&DESCRIBED), base_from_tip, family, &mut member, t).then_some(member)
+	let mut member = *solution;
+	member_of(&arm(&DESCRIBED), base_from_tip, family, &mut member, t).then_some(member)
 }
 
 fn arm(chain: &Chain) -> Arm<'_> {
-    Arm { links: &chain.links, last_from_tip: &chain.last_from_tip, slides: &SLIDES, held: &HELD }
+	Arm { links: &chain.links, last_from_tip: &chain.last_from_tip, slides: &SLIDES, held: &HELD }
 }
 
 /// Where candidates go.
 struct Sink<'a> {
-    arm: Arm<'a>,
-    base_from_tip: &'a Frame,
-    out: &'a mut Solutions,
-    accepted: usize,
-    misses: usize,
-    /// An equation was near to losing roots.
-    doubt: bool,
-    /// The chain is the described one, for which candidates come with their misses.
-    described: bool,
+	arm: Arm<'a>,
+	base_from_tip: &'a Frame,
+	out: &'a mut Solutions,
+	accepted: usize,
+	misses: usize,
+	/// An equation was near to losing roots.
+	doubt: bool,
+	/// The chain is the described one, for which candidates come with their misses.
+	described: bool,
 }
 
 impl Sink<'_> {
-    /// Keeps a candidate if it is right and new: the step of each variable, its value, and the squares of how far the
-    /// described chain is from the pose, rotation and position.
-    fn offer(&mut self, steps: [[f64; 2]; VARIABLES], mut values: [f64; VARIABLES], misses: [f64; 2]) {
-        if self.misses >= MOST_MISSES {
-            return;
-        }
-        if !(self.described && is_exact(misses)) && !self.arm.settle(self.base_from_tip, &steps, &mut values) {
-            self.misses += 1;
-            return;
-        }
-        self.accepted += 1;
-        let new = !self.out.as_slice().iter().any(|other| self.arm.same(&values, other));
-        if new && self.out.len < CAPACITY {
-            self.out.values[self.out.len] = values;
-            self.out.len += 1;
-        }
-    }
+	/// Keeps a candidate if it is right and new: the step of each variable, its value, and the squares of how far the
+	/// described chain is from the pose, rotation and position.
+	fn offer(&mut self, steps: [[f64; 2]; VARIABLES], mut values: [f64; VARIABLES], misses: [f64; 2]) {
+		if self.misses >= MOST_MISSES {
+			return;
+		}
+		if !(self.described && is_exact(misses)) && !self.arm.settle(self.base_from_tip, &steps, &mut values) {
+			self.misses += 1;
+			return;
+		}
+		self.accepted += 1;
+		let new = !self.out.as_slice().iter().any(|other| self.arm.same(&values, other));
+		if new && self.out.len < CAPACITY {
+			self.out.values[self.out.len] = values;
+			self.out.len += 1;
+		}
+	}
 }
 
 fn sin(x: f64) -> f64 {
-    cos_sin(x)[1]
+	cos_sin(x)[1]
 }
 
 fn cos(x: f64) -> f64 {
-    cos_sin(x)[0]
+	cos_sin(x)[0]
 }
 
 fn min(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
+	if a < b { a } else { b }
 }
 
 fn max(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
+	if a > b { a } else { b }
 }
 
 /// As [`solve`], for a chain whose constants are near those of the described one.
 pub fn solve_on(chain: &Chain, base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {
-    solve_with(chain, false, base_from_tip, free, out);
+	solve_with(chain, false, base_from_tip, free, out);
 }
 
 fn solve_with(chain: &Chain, described: bool, base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {
-    out.len = 0;
-    let mut sink = Sink { arm: arm(chain), base_from_tip, out, accepted: 0, misses: 0, doubt: false, described };
-    attempt(base_from_tip, free, SLACK, &mut sink);
-    for slack in WIDER {
-        if sink.accepted == 0 && slack > SLACK {
-            sink.misses = 0;
-            sink.doubt = false;
-            attempt(base_from_tip, free, slack, &mut sink);
-        }
-    }
+	out.len = 0;
+	let mut sink = Sink { arm: arm(chain), base_from_tip, out, accepted: 0, misses: 0, doubt: false, described };
+	attempt(base_from_tip, free, SLACK, &mut sink);
+	for slack in WIDER {
+		if sink.accepted == 0 && slack > SLACK {
+			sink.misses = 0;
+			sink.doubt = false;
+			attempt(base_from_tip, free, slack, &mut sink);
+		}
+	}
 }
 
 /// Offers candidates; the equations may miss their roots by `slack`.
 fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &mut Sink<'_>) {
-    let [[r00, r01, r02], [r10, r11, r12], [r20, r21, r22]] = base_from_tip.rotation;
-    let [px, py, pz] = base_from_tip.position;
-    let [] = *free;
-    // the place of the wrist centre
-    // axes parallel: the height along them does not depend on the turn of the second
-    let t0 = py + r12 * -0.07999999999999996;
-    let t1 = px + -0.07999999999999996 * r02;
-    let t2 = pz + -0.07999999999999996 * r22;
-    let t3 = 0.4 - t2;
-    let t4 = t2 - 0.4;
-    let t5 = -0.45499999999999996 * t3;
-    let t6 = -0.014699999999999963 + -0.5 * (0.0006250000000000001 + (t1 * t1 + t0 * t0 + t4 * t4));
-    let t7 = t1 * 0.025;
-    let t8 = t0 * 0.025;
-    let t9 = px - r02 * 0.07999999999999996;
-    let t10 = py - r12 * 0.07999999999999996;
-    let t11 = pz - r22 * 0.07999999999999996;
-    let mut roots1 = circle(-t0, -t1, 0.0, slack).tries(sink.accepted);
-    while let Some([c1, s1]) = roots1.next(sink.accepted) {
-        let t14 = -0.025 + t1 * c1 - t0 * s1;
-        let t15 = r12 * s1;
-        let t16 = r02 * c1;
-        let t17 = t15 - t16;
-        let t18 = t16 - t15;
-        let t19 = r12 * c1 + r02 * s1;
-        let t20 = t19 * t19;
-        let t21 = c1 * r11 + s1 * r01;
-        let t22 = s1 * r11;
-        let t23 = c1 * r01;
-        let t24 = t22 - t23;
-        let t25 = t23 - t22;
-        let t1_2 = angle_of(s1, c1);
-        let t27 = 0.025 * c1;
-        let t28 = 0.025 * s1;
-        let mut roots2 = circle(-0.45499999999999996 * t14, t5, t6 + c1 * t7 - s1 * t8, slack).tries(sink.accepted);
-        while let Some([c2, s2]) = roots2.next(sink.accepted) {
-            let t31 = -0.45499999999999996 + (t14 * c2 + t3 * s2);
-            let t32 = t4 * c2 + t14 * s2;
-            let t33 = r22 * s2 + c2 * t17;
-            let t34 = r22 * c2 + s2 * t18;
-            let t35 = c2 * r21 - s2 * t24;
-            let t36 = s2 * r21;
-            let t37 = c2 * t25;
-            let t38 = t36 - t37;
-            let t39 = t37 - t36;
-            let t2_2 = angle_of(s2, c2);
-            let t7_2 = c1 * c2;
-            let t8_2 = c1 * s2;
-            let t20_2 = s1 * s2;
-            let t21_2 = s1 * c2;
-            let t45 = 0.45499999999999996 * t7_2 + t27;
-            let t46 = 0.45499999999999996 * t21_2 + t28;
-            let t47 = 0.4 - s2 * 0.45499999999999996;
-            let mut roots3 = align(0.42000000000000004 * t31 + 0.034999999999999976 * t32, t31 * 0.034999999999999976 - 0.42000000000000004 * t32, slack).tries(sink.accepted);
-            while let Some([c3, s3]) = roots3.next(sink.accepted) {
-                // what is left of the rotation for the wrist
-                // the angle between the first and the last axis of the wrist
-                let t50 = s3 * t33 - c3 * t34;
-                let t51 = c3 * t35 - s3 * t38;
-                let t52 = s3 * t35 - c3 * t39;
-                let t3_2 = angle_of(s3, c3);
-                let t54 = t7_2 * c3 - s3 * t8_2;
-                let t12_2 = c3 * t8_2 + t7_2 * s3;
-                let t22_2 = s3 * t20_2 - t21_2 * c3;
-                let t26_2 = c3 * t20_2 + t21_2 * s3;
-                let t58 = s2 * c3 + c2 * s3;
-                let t59 = c2 * c3;
-                let t60 = s2 * s3;
-                let t41_2 = t59 - t60;
-                let t62 = 0.42000000000000004 * t54 - -0.034999999999999976 * t12_2 + t45 - t9;
-                let t63 = 0.42000000000000004 * t22_2 + -0.034999999999999976 * t26_2 - t46 - t10;
-                let t64 = -0.034999999999999976 * (t60 - t59) - 0.42000000000000004 * t58 + t47 - t11;
-                let t65 = t62 * t62 + t63 * t63 + t64 * t64;
-                let mut roots4 = half(-(t33 * c3 + s3 * t34), sqrt(t50 * t50 + t20), slack).tries(sink.accepted);
-                while let Some([c5, s5]) = roots4.next(sink.accepted) {
-                    let t68 = s5 * t52;
-                    let t5_2 = angle_of(s5, c5);
-                    let t70 = r02 * c5;
-                    let t71 = r02 * s5;
-                    let t72 = r12 * c5;
-                    let t73 = r12 * s5;
-                    let t74 = r22 * c5;
-                    let t75 = r22 * s5;
-                    let mut roots5 = align(t50 * s5, -(t19 * s5), slack).tries(sink.accepted);
-                    while let Some([c4, s4]) = roots5.next(sink.accepted) {
-                        let t4_2 = angle_of(s4, c4);
-                        let t79 = s1 * s4 + t12_2 * c4;
-                        let t15_2 = s1 * c4;
-                        let t16_2 = t12_2 * s4;
-                        let t82 = t15_2 - t16_2;
-                        let t27_2 = t26_2 * c4;
-                        let t28_2 = c1 * s4;
-                        let t85 = t27_2 - t28_2;
-                        let t31_2 = c1 * c4 + t26_2 * s4;
-                        let t87 = c4 * t41_2;
-                        let t88 = s4 * t41_2;
-                        let mut roots6 = align(c4 * t21 - s4 * t51, t68 - c5 * (c4 * t51 + s4 * t21), slack).tries(sink.accepted);
-                        while let Some([c6, s6]) = roots6.next(sink.accepted) {
-                            // the candidate: its angles, and how far it is from the pose
-                            let t6_2 = angle_of(s6, c6);
-                            let t92 = c6 * r00 + r01 * s6;
-                            let t11_2 = t54 - (t70 - s5 * t92);
-                            let t13_2 = t79 + (c5 * t92 + t71);
-                            let t14_2 = t11_2 * t11_2 + t13_2 * t13_2;
-                            let t17_2 = r01 * c6;
-                            let t18_2 = s6 * r00;
-                            let t19_2 = t82 - (t17_2 - t18_2);
-                            let t99 = c6 * r10 + r11 * s6;
-                            let t100 = t22_2 - (t72 - s5 * t99);
-                            let t25_2 = t100 * t100;
-                            let t29_2 = c5 * t99 + t73;
-                            let t30_2 = t85 - t29_2;
-                            let t32_2 = r11 * c6;
-                            let t33_2 = s6 * r10;
-                            let t106 = t31_2 - (t32_2 - t33_2);
-                            let t36_2 = c6 * r20 + r21 * s6;
-                            let t37_2 = t58 + (t74 - s5 * t36_2);
-                            let t38_2 = t37_2 * t37_2;
-                            let t110 = t87 + (c5 * t36_2 + t75);
-                            let t111 = t110 * t110;
-                            let t112 = r21 * c6;
-                            let t113 = s6 * r20;
-                            let t114 = t88 + (t112 - t113);
-                            sink.offer(
-                                [[c1, s1], [c2, s2], [c3, s3], [c4, s4], [c5, s5], [c6, s6]],
-                                [t1_2, t2_2, t3_2, t4_2, t5_2, t6_2],
-                                [1.1664 * (t111 + (t38_2 + (t25_2 + (t14_2 + t19_2 * t19_2) + t30_2 * t30_2 + t106 * t106)) + t114 * t114), t65],
-                            );
-                            if !((s5).abs() < 1e-11) {
-                                // the candidate: its angles, and how far it is from the pose
-                                let t115 = t16_2 - t15_2 - (t18_2 - t17_2);
-                                let t116 = t29_2 + (t28_2 - t27_2);
-                                let t117 = t31_2 + (t33_2 - t32_2);
-                                let t118 = t88 - (t113 - t112);
-                                sink.offer(
-                                    [[c1, s1], [c2, s2], [c3, s3], [-c4, -s4], [c5, -s5], [-c6, -s6]],
-                                    [t1_2, t2_2, t3_2, opposite(t4_2), mirrored(t5_2), opposite(t6_2)],
-                                    [1.1664 * (t111 + (t38_2 + (t25_2 + (t14_2 + t115 * t115) + t116 * t116 + t117 * t117)) + t118 * t118), t65],
-                                );
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
+	let [[r00, r01, r02], [r10, r11, r12], [r20, r21, r22]] = base_from_tip.rotation;
+	let [px, py, pz] = base_from_tip.position;
+	let [] = *free;
+	// the place of the wrist centre
+	// axes parallel: the height along them does not depend on the turn of the second
+	let t0 = py + r12 * -0.07999999999999996;
+	let t1 = px + -0.07999999999999996 * r02;
+	let t2 = pz + -0.07999999999999996 * r22;
+	let t3 = 0.4 - t2;
+	let t4 = t2 - 0.4;
+	let t5 = -0.45499999999999996 * t3;
+	let t6 = -0.014699999999999963 + -0.5 * (0.0006250000000000001 + (t1 * t1 + t0 * t0 + t4 * t4));
+	let t7 = t1 * 0.025;
+	let t8 = t0 * 0.025;
+	let t9 = px - r02 * 0.07999999999999996;
+	let t10 = py - r12 * 0.07999999999999996;
+	let t11 = pz - r22 * 0.07999999999999996;
+	let mut roots1 = circle(-t0, -t1, 0.0, slack).tries(sink.accepted);
+	while let Some([c1, s1]) = roots1.next(sink.accepted) {
+		let t14 = -0.025 + t1 * c1 - t0 * s1;
+		let t15 = r12 * s1;
+		let t16 = r02 * c1;
+		let t17 = t15 - t16;
+		let t18 = t16 - t15;
+		let t19 = r12 * c1 + r02 * s1;
+		let t20 = t19 * t19;
+		let t21 = c1 * r11 + s1 * r01;
+		let t22 = s1 * r11;
+		let t23 = c1 * r01;
+		let t24 = t22 - t23;
+		let t25 = t23 - t22;
+		let t1_2 = angle_of(s1, c1);
+		let t27 = 0.025 * c1;
+		let t28 = 0.025 * s1;
+		let mut roots2 = circle(-0.45499999999999996 * t14, t5, t6 + c1 * t7 - s1 * t8, slack).tries(sink.accepted);
+		while let Some([c2, s2]) = roots2.next(sink.accepted) {
+			let t31 = -0.45499999999999996 + (t14 * c2 + t3 * s2);
+			let t32 = t4 * c2 + t14 * s2;
+			let t33 = r22 * s2 + c2 * t17;
+			let t34 = r22 * c2 + s2 * t18;
+			let t35 = c2 * r21 - s2 * t24;
+			let t36 = s2 * r21;
+			let t37 = c2 * t25;
+			let t38 = t36 - t37;
+			let t39 = t37 - t36;
+			let t2_2 = angle_of(s2, c2);
+			let t7_2 = c1 * c2;
+			let t8_2 = c1 * s2;
+			let t20_2 = s1 * s2;
+			let t21_2 = s1 * c2;
+			let t45 = 0.45499999999999996 * t7_2 + t27;
+			let t46 = 0.45499999999999996 * t21_2 + t28;
+			let t47 = 0.4 - s2 * 0.45499999999999996;
+			let mut roots3 = align(0.42000000000000004 * t31 + 0.034999999999999976 * t32, t31 * 0.034999999999999976 - 0.42000000000000004 * t32, slack).tries(sink.accepted);
+			while let Some([c3, s3]) = roots3.next(sink.accepted) {
+				// what is left of the rotation for the wrist
+				// the angle between the first and the last axis of the wrist
+				let t50 = s3 * t33 - c3 * t34;
+				let t51 = c3 * t35 - s3 * t38;
+				let t52 = s3 * t35 - c3 * t39;
+				let t3_2 = angle_of(s3, c3);
+				let t54 = t7_2 * c3 - s3 * t8_2;
+				let t12_2 = c3 * t8_2 + t7_2 * s3;
+				let t22_2 = s3 * t20_2 - t21_2 * c3;
+				let t26_2 = c3 * t20_2 + t21_2 * s3;
+				let t58 = s2 * c3 + c2 * s3;
+				let t59 = c2 * c3;
+				let t60 = s2 * s3;
+				let t41_2 = t59 - t60;
+				let t62 = 0.42000000000000004 * t54 - -0.034999999999999976 * t12_2 + t45 - t9;
+				let t63 = 0.42000000000000004 * t22_2 + -0.034999999999999976 * t26_2 - t46 - t10;
+				let t64 = -0.034999999999999976 * (t60 - t59) - 0.42000000000000004 * t58 + t47 - t11;
+				let t65 = t62 * t62 + t63 * t63 + t64 * t64;
+				let mut roots4 = half(-(t33 * c3 + s3 * t34), sqrt(t50 * t50 + t20), slack).tries(sink.accepted);
+				while let Some([c5, s5]) = roots4.next(sink.accepted) {
+					let t68 = s5 * t52;
+					let t5_2 = angle_of(s5, c5);
+					let t70 = r02 * c5;
+					let t71 = r02 * s5;
+					let t72 = r12 * c5;
+					let t73 = r12 * s5;
+					let t74 = r22 * c5;
+					let t75 = r22 * s5;
+					let mut roots5 = align(t50 * s5, -(t19 * s5), slack).tries(sink.accepted);
+					while let Some([c4, s4]) = roots5.next(sink.accepted) {
+						let t4_2 = angle_of(s4, c4);
+						let t79 = s1 * s4 + t12_2 * c4;
+						let t15_2 = s1 * c4;
+						let t16_2 = t12_2 * s4;
+						let t82 = t15_2 - t16_2;
+						let t27_2 = t26_2 * c4;
+						let t28_2 = c1 * s4;
+						let t85 = t27_2 - t28_2;
+						let t31_2 = c1 * c4 + t26_2 * s4;
+						let t87 = c4 * t41_2;
+						let t88 = s4 * t41_2;
+						let mut roots6 = align(c4 * t21 - s4 * t51, t68 - c5 * (c4 * t51 + s4 * t21), slack).tries(sink.accepted);
+						while let Some([c6, s6]) = roots6.next(sink.accepted) {
+							// the candidate: its angles, and how far it is from the pose
+							let t6_2 = angle_of(s6, c6);
+							let t92 = c6 * r00 + r01 * s6;
+							let t11_2 = t54 - (t70 - s5 * t92);
+							let t13_2 = t79 + (c5 * t92 + t71);
+							let t14_2 = t11_2 * t11_2 + t13_2 * t13_2;
+							let t17_2 = r01 * c6;
+							let t18_2 = s6 * r00;
+							let t19_2 = t82 - (t17_2 - t18_2);
+							let t99 = c6 * r10 + r11 * s6;
+							let t100 = t22_2 - (t72 - s5 * t99);
+							let t25_2 = t100 * t100;
+							let t29_2 = c5 * t99 + t73;
+							let t30_2 = t85 - t29_2;
+							let t32_2 = r11 * c6;
+							let t33_2 = s6 * r10;
+							let t106 = t31_2 - (t32_2 - t33_2);
+							let t36_2 = c6 * r20 + r21 * s6;
+							let t37_2 = t58 + (t74 - s5 * t36_2);
+							let t38_2 = t37_2 * t37_2;
+							let t110 = t87 + (c5 * t36_2 + t75);
+							let t111 = t110 * t110;
+							let t112 = r21 * c6;
+							let t113 = s6 * r20;
+							let t114 = t88 + (t112 - t113);
+							sink.offer(
+								[[c1, s1], [c2, s2], [c3, s3], [c4, s4], [c5, s5], [c6, s6]],
+								[t1_2, t2_2, t3_2, t4_2, t5_2, t6_2],
+								[1.1664 * (t111 + (t38_2 + (t25_2 + (t14_2 + t19_2 * t19_2) + t30_2 * t30_2 + t106 * t106)) + t114 * t114), t65],
+							);
+							if !((s5).abs() < 1e-11) {
+								// the candidate: its angles, and how far it is from the pose
+								let t115 = t16_2 - t15_2 - (t18_2 - t17_2);
+								let t116 = t29_2 + (t28_2 - t27_2);
+								let t117 = t31_2 + (t33_2 - t32_2);
+								let t118 = t88 - (t113 - t112);
+								sink.offer(
+									[[c1, s1], [c2, s2], [c3, s3], [-c4, -s4], [c5, -s5], [-c6, -s6]],
+									[t1_2, t2_2, t3_2, opposite(t4_2), mirrored(t5_2), opposite(t6_2)],
+									[1.1664 * (t111 + (t38_2 + (t25_2 + (t14_2 + t115 * t115) + t116 * t116 + t117 * t117)) + t118 * t118), t65],
+								);
+							}
+						}
+					}
+				}
+			}
+		}
+	}
 }
 
 mod sqrt {
@@ -401,25 +401,25 @@ use super::math::product_rest;
 
 /// Square root, correctly rounded; 0 for arguments that are negative or below 1e-300.
 pub fn sqrt(x: f64) -> f64 {
-    if !(x > 1e-300) {
-        return 0.0;
-    }
-    if x == f64::INFINITY {
-        return x;
-    }
-    // Halving the exponent gives the inverse root within 4 %; each Newton step doubles the digits.
-    let mut inverse = f64::from_bits(0x5fe6_eb50_c7b5_37a9 - (x.to_bits() >> 1));
-    let half = 0.5 * x;
-    for _ in 0..4 {
-        inverse *= 1.5 - half * inverse * inverse;
-    }
-    let root = x * inverse;
-    // What is missing, with squares taken exactly.
-    let rest = |root: f64| (x - root * root) - product_rest(root, root);
-    let root = root + 0.5 * inverse * rest(root);
-    // Just below powers of four the sum is half way between two numbers: the lower one is nearer.
-    let below = f64::from_bits(root.to_bits() - 1);
-    if rest(root) <= -root * (root - below) { below } else { root }
+	if !(x > 1e-300) {
+		return 0.0;
+	}
+	if x == f64::INFINITY {
+		return x;
+	}
+	// Halving the exponent gives the inverse root within 4 %; each Newton step doubles the digits.
+	let mut inverse = f64::from_bits(0x5fe6_eb50_c7b5_37a9 - (x.to_bits() >> 1));
+	let half = 0.5 * x;
+	for _ in 0..4 {
+		inverse *= 1.5 - half * inverse * inverse;
+	}
+	let root = x * inverse;
+	// What is missing, with squares taken exactly.
+	let rest = |root: f64| (x - root * root) - product_rest(root, root);
+	let root = root + 0.5 * inverse * rest(root);
+	// Just below powers of four the sum is half way between two numbers: the lower one is nearer.
+	let below = f64::from_bits(root.to_bits() - 1);
+	if rest(root) <= -root * (root - below) { below } else { root }
 }
 }
 
@@ -436,104 +436,104 @@ pub use super::sqrt::sqrt;
 /// Reduction by a three-part pi/2 to [-pi/4, pi/4] and a remainder below the last place, then Taylor polynomials whose
 /// truncation is below 1e-18.
 pub fn cos_sin(angle: f64) -> [f64; 2] {
-    // The first two parts have 33 bits: their products with the number of quarters are exact.
-    const PI_2_A: f64 = 1.570_796_326_734_125_6;
-    const PI_2_B: f64 = 6.077_100_506_303_966e-11;
-    const PI_2_C: f64 = 2.022_266_248_795_950_6e-21;
-    let scaled = angle * core::f64::consts::FRAC_2_PI;
-    // Ties matter little: the polynomials hold a bit beyond pi/4.
-    let quarter = (if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i64;
-    let k = quarter as f64;
-    let (b, c) = (k * PI_2_B, k * PI_2_C);
-    let a = angle - k * PI_2_A;
-    let ab = a - b;
-    let x = ab - c;
-    // What the two differences have rounded away.
-    let shift = ab - a;
-    let low = ((a - (ab - shift)) - (b + shift)) + ((ab - x) - c);
-    let z = x * x;
-    let mut s = 1.0 / 355_687_428_096_000.0;
-    for d in [-1_307_674_368_000.0, 6_227_020_800.0, -39_916_800.0, 362_880.0, -5_040.0, 120.0, -6.0] {
-        s = 1.0 / d + z * s;
-    }
-    let half = 0.5 * z;
-    let s = x + (x * z * s + low * (1.0 - half));
-    let mut c = 1.0 / 20_922_789_888_000.0;
-    for d in [-87_178_291_200.0, 479_001_600.0, -3_628_800.0, 40_320.0, -720.0, 24.0] {
-        c = 1.0 / d + z * c;
-    }
-    let w = 1.0 - half;
-    let c = w + (((1.0 - w) - half) + (z * z * c - x * low));
-    match quarter & 3 {
-        0 => [c, s],
-        1 => [-s, c],
-        2 => [-c, -s],
-        _ => [s, -c],
-    }
+	// The first two parts have 33 bits: their products with the number of quarters are exact.
+	const PI_2_A: f64 = 1.570_796_326_734_125_6;
+	const PI_2_B: f64 = 6.077_100_506_303_966e-11;
+	const PI_2_C: f64 = 2.022_266_248_795_950_6e-21;
+	let scaled = angle * core::f64::consts::FRAC_2_PI;
+	// Ties matter little: the polynomials hold a bit beyond pi/4.
+	let quarter = (if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i64;
+	let k = quarter as f64;
+	let (b, c) = (k * PI_2_B, k * PI_2_C);
+	let a = angle - k * PI_2_A;
+	let ab = a - b;
+	let x = ab - c;
+	// What the two differences have rounded away.
+	let shift = ab - a;
+	let low = ((a - (ab - shift)) - (b + shift)) + ((ab - x) - c);
+	let z = x * x;
+	let mut s = 1.0 / 355_687_428_096_000.0;
+	for d in [-1_307_674_368_000.0, 6_227_020_800.0, -39_916_800.0, 362_880.0, -5_040.0, 120.0, -6.0] {
+		s = 1.0 / d + z * s;
+	}
+	let half = 0.5 * z;
+	let s = x + (x * z * s + low * (1.0 - half));
+	let mut c = 1.0 / 20_922_789_888_000.0;
+	for d in [-87_178_291_200.0, 479_001_600.0, -3_628_800.0, 40_320.0, -720.0, 24.0] {
+		c = 1.0 / d + z * c;
+	}
+	let w = 1.0 - half;
+	let c = w + (((1.0 - w) - half) + (z * z * c - x * low));
+	match quarter & 3 {
+		0 => [c, s],
+		1 => [-s, c],
+		2 => [-c, -s],
+		_ => [s, -c],
+	}
 }
 
 /// Angle with this sine and cosine in (-pi, pi], within two places; faster than [`atan2`] as the point is on the unit circle.
 ///
 /// Folded to the first octant and turned back by the nearest of the angles with sine `k/16`; what is left is a small sine.
 pub fn angle_of(sine: f64, cosine: f64) -> f64 {
-    use core::f64::consts::{FRAC_PI_2, PI};
-    /// Cosine and angle.
-    const SIXTEENTHS: [[f64; 2]; 12] = [
-        [1.0, 0.0],
-        [0.998_044_963_916_957, 0.062_540_761_796_491_39],
-        [0.992_156_741_649_221_5, 0.125_327_831_168_065_4],
-        [0.982_264_602_843_857, 0.188_616_386_175_404_1],
-        [0.968_245_836_551_854_3, 0.252_680_255_142_078_65],
-        [0.949_917_759_598_166_5, 0.317_823_703_927_880_73],
-        [0.927_024_810_886_957_9, 0.384_396_774_495_639_1],
-        [0.899_218_410_621_135, 0.452_816_594_744_925_6],
-        [0.866_025_403_784_438_6, core::f64::consts::FRAC_PI_6],
-        [0.826_797_284_707_684_5, 0.597_406_416_645_350_2],
-        [0.780_624_749_799_799_8, 0.675_131_532_937_031_7],
-        [0.726_184_377_413_890_6, 0.758_040_765_426_236],
-    ];
-    /// What the angle of the octant is added to, and with which sign: beyond the diagonal, left, both.
-    const OCTANTS: [[f64; 2]; 4] = [[0.0, 1.0], [FRAC_PI_2, -1.0], [PI, -1.0], [FRAC_PI_2, 1.0]];
-    let (ac, as_) = (cosine.abs(), sine.abs());
-    let (large, small) = if ac > as_ { (ac, as_) } else { (as_, ac) };
-    // The cast gives 0 for what is not a number.
-    let k = (small * 16.0 + 0.5) as u32 as usize;
-    let k = if k > 11 { 11 } else { k };
-    let [cos, angle] = SIXTEENTHS[k];
-    let x = small * cos - large * (k as f64 * 0.0625);
-    let z = x * x;
-    let mut p = 945.0 / 42_240.0;
-    for coefficient in [105.0 / 3_456.0, 15.0 / 336.0, 3.0 / 40.0, 1.0 / 6.0] {
-        p = coefficient + z * p;
-    }
-    let octant = angle + (x + x * z * p);
-    let [base, sign] = OCTANTS[usize::from(as_ > ac) + 2 * usize::from(cosine < 0.0)];
-    let angle = base + sign * octant;
-    if sine < 0.0 { mirrored(angle) } else { angle }
+	use core::f64::consts::{FRAC_PI_2, PI};
+	/// Cosine and angle.
+	const SIXTEENTHS: [[f64; 2]; 12] = [
+		[1.0, 0.0],
+		[0.998_044_963_916_957, 0.062_540_761_796_491_39],
+		[0.992_156_741_649_221_5, 0.125_327_831_168_065_4],
+		[0.982_264_602_843_857, 0.188_616_386_175_404_1],
+		[0.968_245_836_551_854_3, 0.252_680_255_142_078_65],
+		[0.949_917_759_598_166_5, 0.317_823_703_927_880_73],
+		[0.927_024_810_886_957_9, 0.384_396_774_495_639_1],
+		[0.899_218_410_621_135, 0.452_816_594_744_925_6],
+		[0.866_025_403_784_438_6, core::f64::consts::FRAC_PI_6],
+		[0.826_797_284_707_684_5, 0.597_406_416_645_350_2],
+		[0.780_624_749_799_799_8, 0.675_131_532_937_031_7],
+		[0.726_184_377_413_890_6, 0.758_040_765_426_236],
+	];
+	/// What the angle of the octant is added to, and with which sign: beyond the diagonal, left, both.
+	const OCTANTS: [[f64; 2]; 4] = [[0.0, 1.0], [FRAC_PI_2, -1.0], [PI, -1.0], [FRAC_PI_2, 1.0]];
+	let (ac, as_) = (cosine.abs(), sine.abs());
+	let (large, small) = if ac > as_ { (ac, as_) } else { (as_, ac) };
+	// The cast gives 0 for what is not a number.
+	let k = (small * 16.0 + 0.5) as u32 as usize;
+	let k = if k > 11 { 11 } else { k };
+	let [cos, angle] = SIXTEENTHS[k];
+	let x = small * cos - large * (k as f64 * 0.0625);
+	let z = x * x;
+	let mut p = 945.0 / 42_240.0;
+	for coefficient in [105.0 / 3_456.0, 15.0 / 336.0, 3.0 / 40.0, 1.0 / 6.0] {
+		p = coefficient + z * p;
+	}
+	let octant = angle + (x + x * z * p);
+	let [base, sign] = OCTANTS[usize::from(as_ > ac) + 2 * usize::from(cosine < 0.0)];
+	let angle = base + sign * octant;
+	if sine < 0.0 { mirrored(angle) } else { angle }
 }
 
 /// The angle half a turn on; both in (-pi, pi].
 pub fn opposite(angle: f64) -> f64 {
-    use core::f64::consts::PI;
-    let turned = if angle > 0.0 { angle - PI } else { angle + PI };
-    if turned > -PI { turned } else { PI }
+	use core::f64::consts::PI;
+	let turned = if angle > 0.0 { angle - PI } else { angle + PI };
+	if turned > -PI { turned } else { PI }
 }
 
 /// The angle with the other sign; both in (-pi, pi].
 pub fn mirrored(angle: f64) -> f64 {
-    if angle < core::f64::consts::PI { -angle } else { angle }
+	if angle < core::f64::consts::PI { -angle } else { angle }
 }
 
 /// The number without the lower half of its digits.
 pub fn upper_half(x: f64) -> f64 {
-    f64::from_bits(x.to_bits() & 0xffff_ffff_f800_0000)
+	f64::from_bits(x.to_bits() & 0xffff_ffff_f800_0000)
 }
 
 /// What the product `a * b` has rounded away.
 pub fn product_rest(a: f64, b: f64) -> f64 {
-    let (a_top, b_top) = (upper_half(a), upper_half(b));
-    let (a_low, b_low) = (a - a_top, b - b_top);
-    ((a_top * b_top - a * b) + a_top * b_low + a_low * b_top) + a_low * b_low
+	let (a_top, b_top) = (upper_half(a), upper_half(b));
+	let (a_low, b_low) = (a - a_top, b - b_top);
+	((a_top * b_top - a * b) + a_top * b_low + a_low * b_top) + a_low * b_low
 }
 }
 
@@ -555,105 +555,105 @@ const REPRESENTATIVES: usize = 32;
 
 /// The k-th of them: zero first, then a half turn, then quarters between, and so on.
 fn representative(k: usize) -> [f64; 2] {
-    let reversed = ((k as u32).reverse_bits() >> 27) as f64;
-    cos_sin(reversed * (core::f64::consts::TAU / 32.0))
+	let reversed = ((k as u32).reverse_bits() >> 27) as f64;
+	cos_sin(reversed * (core::f64::consts::TAU / 32.0))
 }
 
 /// The roots of an equation, at most `N`, each `[cos, sin]` of an angle, or `[length, 0]`.
 #[derive(Clone, Copy, Debug)]
 pub struct Roots<const N: usize> {
-    items: [[f64; 2]; N],
-    len: usize,
-    /// The unknown is free, or nearly so: later roots are tried only while none has led to a solution.
-    pub free: bool,
+	items: [[f64; 2]; N],
+	len: usize,
+	/// The unknown is free, or nearly so: later roots are tried only while none has led to a solution.
+	pub free: bool,
 }
 
 impl<const N: usize> Roots<N> {
-    /// No root.
-    pub const NONE: Self = Roots { items: [[1.0, 0.0]; N], len: 0, free: false };
+	/// No root.
+	pub const NONE: Self = Roots { items: [[1.0, 0.0]; N], len: 0, free: false };
 
-    /// Any angle will do.
-    pub const ANY_ANGLE: Self = Roots { items: [[1.0, 0.0]; N], len: 0, free: true };
+	/// Any angle will do.
+	pub const ANY_ANGLE: Self = Roots { items: [[1.0, 0.0]; N], len: 0, free: true };
 
-    /// How many roots there are.
-    pub fn count(&self) -> usize {
-        if self.free { self.len + REPRESENTATIVES } else { self.len }
-    }
+	/// How many roots there are.
+	pub fn count(&self) -> usize {
+		if self.free { self.len + REPRESENTATIVES } else { self.len }
+	}
 
-    /// One of them.
-    pub fn get(&self, i: usize) -> [f64; 2] {
-        if i < self.len { self.items[i] } else { representative(i - self.len) }
-    }
+	/// One of them.
+	pub fn get(&self, i: usize) -> [f64; 2] {
+		if i < self.len { self.items[i] } else { representative(i - self.len) }
+	}
 
-    /// The same to be tried one after the other, where so many solutions are known.
-    pub fn tries(self, accepted: usize) -> Tries<N> {
-        Tries { roots: self, accepted, tried: 0 }
-    }
+	/// The same to be tried one after the other, where so many solutions are known.
+	pub fn tries(self, accepted: usize) -> Tries<N> {
+		Tries { roots: self, accepted, tried: 0 }
+	}
 
-    /// Adds one, if there is room.
-    pub fn push(&mut self, root: [f64; 2]) {
-        if self.len < N {
-            self.items[self.len] = root;
-            self.len += 1;
-        }
-    }
+	/// Adds one, if there is room.
+	pub fn push(&mut self, root: [f64; 2]) {
+		if self.len < N {
+			self.items[self.len] = root;
+			self.len += 1;
+		}
+	}
 }
 
 /// Roots that are tried one after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Tries<const N: usize> {
-    roots: Roots<N>,
-    accepted: usize,
-    tried: usize,
+	roots: Roots<N>,
+	accepted: usize,
+	tried: usize,
 }
 
 impl<const N: usize> Tries<N> {
-    /// The next root: none after the last, nor where the unknown is free and more solutions are known by now than before the first.
-    pub fn next(&mut self, accepted: usize) -> Option<[f64; 2]> {
-        if self.tried == self.roots.count() || self.roots.free && accepted > self.accepted {
-            return None;
-        }
-        self.tried += 1;
-        Some(self.roots.get(self.tried - 1))
-    }
+	/// The next root: none after the last, nor where the unknown is free and more solutions are known by now than before the first.
+	pub fn next(&mut self, accepted: usize) -> Option<[f64; 2]> {
+		if self.tried == self.roots.count() || self.roots.free && accepted > self.accepted {
+			return None;
+		}
+		self.tried += 1;
+		Some(self.roots.get(self.tried - 1))
+	}
 }
 
 /// The angle whose cosine and sine are proportional to `x` and `y`.
 ///
 /// These are products of two vectors that vanish together where the angle is free: up to there they tell it, however small they are.
 pub fn align(x: f64, y: f64, slack: f64) -> Roots<1> {
-    let n = sqrt(x * x + y * y);
-    if !(x.abs() + y.abs() < f64::INFINITY) {
-        return Roots::NONE;
-    }
-    if n < VANISHING * VANISHING {
-        return Roots::ANY_ANGLE;
-    }
-    let mut roots = Roots::NONE;
-    roots.free = n < VANISHING || n < slack;
-    roots.push([x / n, y / n]);
-    roots
+	let n = sqrt(x * x + y * y);
+	if !(x.abs() + y.abs() < f64::INFINITY) {
+		return Roots::NONE;
+	}
+	if n < VANISHING * VANISHING {
+		return Roots::ANY_ANGLE;
+	}
+	let mut roots = Roots::NONE;
+	roots.free = n < VANISHING || n < slack;
+	roots.push([x / n, y / n]);
+	roots
 }
 
 /// Of the two angles of [`mirror`] the one whose sine is positive.
 pub fn half(x: f64, y: f64, slack: f64) -> Roots<1> {
-    let n = sqrt(x * x + y * y);
-    if !(x.abs() + y.abs() < f64::INFINITY) {
-        return Roots::NONE;
-    }
-    if n < VANISHING {
-        return Roots::ANY_ANGLE;
-    }
-    let mut roots = Roots::NONE;
-    roots.push([x / n, apart(y.abs() / n, slack / n)]);
-    roots
+	let n = sqrt(x * x + y * y);
+	if !(x.abs() + y.abs() < f64::INFINITY) {
+		return Roots::NONE;
+	}
+	if n < VANISHING {
+		return Roots::ANY_ANGLE;
+	}
+	let mut roots = Roots::NONE;
+	roots.push([x / n, apart(y.abs() / n, slack / n)]);
+	roots
 }
 
 /// The sine at which two roots that nearly fall together are started. The ideal chain says where they meet only up to
 /// `slack`; from the meeting point itself a polish could find neither.
 fn apart(sine: f64, slack: f64) -> f64 {
-    let least = sqrt(2.0 * slack);
-    if sine < least { if least < 0.2 { least } else { 0.2 } } else { sine }
+	let least = sqrt(2.0 * slack);
+	if sine < least { if least < 0.2 { least } else { 0.2 } } else { sine }
 }
 
 /// The angles with `a cos + b sin = d`.
@@ -661,27 +661,27 @@ fn apart(sine: f64, slack: f64) -> f64 {
 /// When the line misses the unit circle by no more than [`EDGE`] and `slack` the nearest angle is given: such poses are at the
 /// edge of what the arm can do, and the check of solutions decides.
 pub fn circle(a: f64, b: f64, d: f64, slack: f64) -> Roots<2> {
-    let n = sqrt(a * a + b * b);
-    if !(a.abs() + b.abs() < f64::INFINITY) {
-        return Roots::NONE;
-    }
-    if n < VANISHING {
-        return if d.abs() <= EDGE + slack { Roots::ANY_ANGLE } else { Roots::NONE };
-    }
-    let miss = d.abs() - n;
-    if !(miss <= EDGE + slack) {
-        return Roots::NONE;
-    }
-    let (x, y) = (a / n, b / n);
-    let c = if miss < 0.0 { d / n } else { 1f64.copysign(d) };
-    // (1 - c)(1 + c) keeps the digits that 1 - c * c loses near the edge.
-    let s = apart(sqrt((1.0 - c) * (1.0 + c)), slack / n);
-    let mut roots = Roots::NONE;
-    roots.push([c * x - s * y, c * y + s * x]);
-    if s > 0.0 {
-        roots.push([c * x + s * y, c * y - s * x]);
-    }
-    roots
+	let n = sqrt(a * a + b * b);
+	if !(a.abs() + b.abs() < f64::INFINITY) {
+		return Roots::NONE;
+	}
+	if n < VANISHING {
+		return if d.abs() <= EDGE + slack { Roots::ANY_ANGLE } else { Roots::NONE };
+	}
+	let miss = d.abs() - n;
+	if !(miss <= EDGE + slack) {
+		return Roots::NONE;
+	}
+	let (x, y) = (a / n, b / n);
+	let c = if miss < 0.0 { d / n } else { 1f64.copysign(d) };
+	// (1 - c)(1 + c) keeps the digits that 1 - c * c loses near the edge.
+	let s = apart(sqrt((1.0 - c) * (1.0 + c)), slack / n);
+	let mut roots = Roots::NONE;
+	roots.push([c * x - s * y, c * y + s * x]);
+	if s > 0.0 {
+		roots.push([c * x + s * y, c * y - s * x]);
+	}
+	roots
 }
 }
 
@@ -710,78 +710,78 @@ const NEAR: (f64, usize) = (1e-7, 4);
 /// A rigid transform: rotation rows, then position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
-    /// Rotation matrix, row by row.
-    pub rotation: [[f64; 3]; 3],
-    /// Position in metres.
-    pub position: [f64; 3],
+	/// Rotation matrix, row by row.
+	pub rotation: [[f64; 3]; 3],
+	/// Position in metres.
+	pub position: [f64; 3],
 }
 
 /// A moving joint whose axis is the z axis of its own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Link {
-    /// Pose of the joint frame in the frame after the previous joint.
-    pub previous_from_joint: Frame,
-    /// Whether it slides along its axis instead of turning about it.
-    pub slides: bool,
-    /// Which variable moves it.
-    pub variable: usize,
-    /// Joint value for each unit of the variable: 1 unless the joint follows another.
-    pub ratio: f64,
+	/// Pose of the joint frame in the frame after the previous joint.
+	pub previous_from_joint: Frame,
+	/// Whether it slides along its axis instead of turning about it.
+	pub slides: bool,
+	/// Which variable moves it.
+	pub variable: usize,
+	/// Joint value for each unit of the variable: 1 unless the joint follows another.
+	pub ratio: f64,
 }
 
 impl Frame {
-    /// The product of two transforms.
-    pub fn times(&self, other: &Frame) -> Frame {
-        let (a, b) = (&self.rotation, &other.rotation);
-        let mut out = *self;
-        for i in 0..3 {
-            for j in 0..3 {
-                out.rotation[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
-            }
-            let p = &other.position;
-            out.position[i] += a[i][0] * p[0] + a[i][1] * p[1] + a[i][2] * p[2];
-        }
-        out
-    }
+	/// The product of two transforms.
+	pub fn times(&self, other: &Frame) -> Frame {
+		let (a, b) = (&self.rotation, &other.rotation);
+		let mut out = *self;
+		for i in 0..3 {
+			for j in 0..3 {
+				out.rotation[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
+			}
+			let p = &other.position;
+			out.position[i] += a[i][0] * p[0] + a[i][1] * p[1] + a[i][2] * p[2];
+		}
+		out
+	}
 
-    /// This frame after its joint has moved; `step` is `[cos, sin]`, or `[length, _]` for a sliding joint.
-    fn moved(&self, slides: bool, step: [f64; 2]) -> Frame {
-        let mut out = *self;
-        for i in 0..3 {
-            let row = &mut out.rotation[i];
-            if slides {
-                out.position[i] += step[0] * row[2];
-            } else {
-                let [x, y, z] = *row;
-                *row = [step[0] * x + step[1] * y, step[0] * y - step[1] * x, z];
-            }
-        }
-        out
-    }
+	/// This frame after its joint has moved; `step` is `[cos, sin]`, or `[length, _]` for a sliding joint.
+	fn moved(&self, slides: bool, step: [f64; 2]) -> Frame {
+		let mut out = *self;
+		for i in 0..3 {
+			let row = &mut out.rotation[i];
+			if slides {
+				out.position[i] += step[0] * row[2];
+			} else {
+				let [x, y, z] = *row;
+				*row = [step[0] * x + step[1] * y, step[0] * y - step[1] * x, z];
+			}
+		}
+		out
+	}
 
-    /// Distance of two poses: the larger of metres and Frobenius norm of the rotation difference.
-    pub fn distance(&self, other: &Frame) -> f64 {
-        let (mut rotation, mut position) = (0.0, 0.0);
-        for i in 0..3 {
-            for j in 0..3 {
-                let d = self.rotation[i][j] - other.rotation[i][j];
-                rotation += d * d;
-            }
-            let d = self.position[i] - other.position[i];
-            position += d * d;
-        }
-        // A NaN must not pass as the smaller of the two.
-        sqrt(if rotation > position { rotation } else { position }) + 0.0 * (rotation + position)
-    }
+	/// Distance of two poses: the larger of metres and Frobenius norm of the rotation difference.
+	pub fn distance(&self, other: &Frame) -> f64 {
+		let (mut rotation, mut position) = (0.0, 0.0);
+		for i in 0..3 {
+			for j in 0..3 {
+				let d = self.rotation[i][j] - other.rotation[i][j];
+				rotation += d * d;
+			}
+			let d = self.position[i] - other.position[i];
+			position += d * d;
+		}
+		// A NaN must not pass as the smaller of the two.
+		sqrt(if rotation > position { rotation } else { position }) + 0.0 * (rotation + position)
+	}
 }
 
 /// `base_from_tip` where each joint has moved by its `[cos, sin]` or `[length, _]`.
 pub fn forward(links: &[Link], last_from_tip: &Frame, steps: &[[f64; 2]]) -> Frame {
-    let mut at = links[0].previous_from_joint.moved(links[0].slides, steps[0]);
-    for (link, step) in links.iter().zip(steps).skip(1) {
-        at = at.times(&link.previous_from_joint).moved(link.slides, *step);
-    }
-    at.times(last_from_tip)
+	let mut at = links[0].previous_from_joint.moved(links[0].slides, steps[0]);
+	for (link, step) in links.iter().zip(steps).skip(1) {
+		at = at.times(&link.previous_from_joint).moved(link.slides, *step);
+	}
+	at.times(last_from_tip)
 }
 
 /// Brings `values` onto the pose by Newton steps on the true chain; the variables marked in `held` stay.
@@ -794,98 +794,98 @@ pub fn forward(links: &[Link], last_from_tip: &Frame, steps: &[[f64; 2]]) -> Fra
 /// halves its distance to them from far out, but may first have to get there. They end when they lead nowhere: the
 /// distance has not fallen to a half within [`PATIENCE`] of them.
 pub fn polish(
-    links: &[Link],
-    last_from_tip: &Frame,
-    base_from_tip: &Frame,
-    values: &mut [f64],
-    held: &[bool],
+	links: &[Link],
+	last_from_tip: &Frame,
+	base_from_tip: &Frame,
+	values: &mut [f64],
+	held: &[bool],
 ) -> f64 {
-    // Below this a direction in which the tip hardly moves is one in which it does not.
-    const LEAST_DAMPING: f64 = 1e-22;
-    let n = values.len();
-    let mut at = [0.0; MAX_JOINTS];
-    at[..n].copy_from_slice(values);
-    let mut best = f64::INFINITY;
-    let (mut halved, mut since, mut patience) = (f64::INFINITY, 0, PATIENCE);
-    for step in 0..50 {
-        let (distance, error, columns) = linearise(links, last_from_tip, base_from_tip, &at[..n]);
-        if step == 0 && distance < NEAR.0 {
-            patience = NEAR.1;
-        }
-        if distance < best {
-            let converged = distance < EXACT && distance > 0.1 * best;
-            best = distance;
-            values.copy_from_slice(&at[..n]);
-            if best < 0.1 * EXACT || converged {
-                break;
-            }
-        } else if best < EXACT || !(distance < f64::INFINITY) {
-            break;
-        }
-        since += 1;
-        if best <= 0.5 * halved {
-            (halved, since) = (best, 0);
-        } else if since >= patience {
-            break;
-        }
-        let step = damped(&columns, &error, LEAST_DAMPING + 0.25 * distance * distance, held, n);
-        let mut longest = 0.0f64;
-        for i in 0..n {
-            longest = longest.max(step[i].abs());
-        }
-        let scale = if longest > 0.3 { 0.3 / longest } else { 1.0 };
-        for i in 0..n {
-            at[i] += scale * step[i];
-        }
-    }
-    best
+	// Below this a direction in which the tip hardly moves is one in which it does not.
+	const LEAST_DAMPING: f64 = 1e-22;
+	let n = values.len();
+	let mut at = [0.0; MAX_JOINTS];
+	at[..n].copy_from_slice(values);
+	let mut best = f64::INFINITY;
+	let (mut halved, mut since, mut patience) = (f64::INFINITY, 0, PATIENCE);
+	for step in 0..50 {
+		let (distance, error, columns) = linearise(links, last_from_tip, base_from_tip, &at[..n]);
+		if step == 0 && distance < NEAR.0 {
+			patience = NEAR.1;
+		}
+		if distance < best {
+			let converged = distance < EXACT && distance > 0.1 * best;
+			best = distance;
+			values.copy_from_slice(&at[..n]);
+			if best < 0.1 * EXACT || converged {
+				break;
+			}
+		} else if best < EXACT || !(distance < f64::INFINITY) {
+			break;
+		}
+		since += 1;
+		if best <= 0.5 * halved {
+			(halved, since) = (best, 0);
+		} else if since >= patience {
+			break;
+		}
+		let step = damped(&columns, &error, LEAST_DAMPING + 0.25 * distance * distance, held, n);
+		let mut longest = 0.0f64;
+		for i in 0..n {
+			longest = longest.max(step[i].abs());
+		}
+		let scale = if longest > 0.3 { 0.3 / longest } else { 1.0 };
+		for i in 0..n {
+			at[i] += scale * step[i];
+		}
+	}
+	best
 }
 
 /// Distance to the pose, its six-vector (metres, radians), and the column of each variable.
 pub fn linearise(
-    links: &[Link],
-    last_from_tip: &Frame,
-    base_from_tip: &Frame,
-    values: &[f64],
+	links: &[Link],
+	last_from_tip: &Frame,
+	base_from_tip: &Frame,
+	values: &[f64],
 ) -> (f64, [f64; 6], [[f64; 6]; MAX_JOINTS]) {
-    let mut at = Frame { rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], position: [0.0; 3] };
-    let mut axes = [([0.0; 3], [0.0; 3]); MAX_JOINTS];
-    for (link, axis) in links.iter().zip(&mut axes) {
-        at = at.times(&link.previous_from_joint);
-        *axis = (at.rotation.map(|row| row[2]), at.position);
-        let value = link.ratio * values[link.variable];
-        at = at.moved(link.slides, if link.slides { [value, 0.0] } else { cos_sin(value) });
-    }
-    at = at.times(last_from_tip);
-    let mut error = [0.0; 6];
-    for i in 0..3 {
-        error[i] = base_from_tip.position[i] - at.position[i];
-    }
-    for column in 0..3 {
-        let a = at.rotation.map(|row| row[column]);
-        let b = base_from_tip.rotation.map(|row| row[column]);
-        let turn = cross(a, b);
-        for i in 0..3 {
-            error[3 + i] += 0.5 * turn[i];
-        }
-    }
-    let mut columns = [[0.0; 6]; MAX_JOINTS];
-    for (link, (z, p)) in links.iter().zip(&axes) {
-        let column = &mut columns[link.variable];
-        let arm = [at.position[0] - p[0], at.position[1] - p[1], at.position[2] - p[2]];
-        let linear = if link.slides { *z } else { cross(*z, arm) };
-        for i in 0..3 {
-            column[i] += link.ratio * linear[i];
-            if !link.slides {
-                column[3 + i] += link.ratio * z[i];
-            }
-        }
-    }
-    (at.distance(base_from_tip), error, columns)
+	let mut at = Frame { rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], position: [0.0; 3] };
+	let mut axes = [([0.0; 3], [0.0; 3]); MAX_JOINTS];
+	for (link, axis) in links.iter().zip(&mut axes) {
+		at = at.times(&link.previous_from_joint);
+		*axis = (at.rotation.map(|row| row[2]), at.position);
+		let value = link.ratio * values[link.variable];
+		at = at.moved(link.slides, if link.slides { [value, 0.0] } else { cos_sin(value) });
+	}
+	at = at.times(last_from_tip);
+	let mut error = [0.0; 6];
+	for i in 0..3 {
+		error[i] = base_from_tip.position[i] - at.position[i];
+	}
+	for column in 0..3 {
+		let a = at.rotation.map(|row| row[column]);
+		let b = base_from_tip.rotation.map(|row| row[column]);
+		let turn = cross(a, b);
+		for i in 0..3 {
+			error[3 + i] += 0.5 * turn[i];
+		}
+	}
+	let mut columns = [[0.0; 6]; MAX_JOINTS];
+	for (link, (z, p)) in links.iter().zip(&axes) {
+		let column = &mut columns[link.variable];
+		let arm = [at.position[0] - p[0], at.position[1] - p[1], at.position[2] - p[2]];
+		let linear = if link.slides { *z } else { cross(*z, arm) };
+		for i in 0..3 {
+			column[i] += link.ratio * linear[i];
+			if !link.slides {
+				column[3 + i] += link.ratio * z[i];
+			}
+		}
+	}
+	(at.distance(base_from_tip), error, columns)
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+	[a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// The step `x` of the variables that makes `|columns x - error|^2 + damping |x|^2` least; held ones stay.
@@ -893,61 +893,61 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 /// By reflections of the columns with the damping below them: where axes nearly line up the products of the normal equations would lose
 /// the digits that tell which way to go.
 fn damped(
-    columns: &[[f64; 6]; MAX_JOINTS],
-    error: &[f64; 6],
-    damping: f64,
-    held: &[bool],
-    n: usize,
+	columns: &[[f64; 6]; MAX_JOINTS],
+	error: &[f64; 6],
+	damping: f64,
+	held: &[bool],
+	n: usize,
 ) -> [f64; MAX_JOINTS] {
-    const ROWS: usize = 6 + MAX_JOINTS;
-    let root = sqrt(damping);
-    let mut m = [[0.0; ROWS]; MAX_JOINTS];
-    let mut right = [0.0; ROWS];
-    right[..6].copy_from_slice(error);
-    for i in 0..n {
-        if held[i] {
-            m[i][6 + i] = 1.0;
-        } else {
-            m[i][..6].copy_from_slice(&columns[i]);
-            m[i][6 + i] = root;
-        }
-    }
-    let mut diagonal = [0.0; MAX_JOINTS];
-    for k in 0..n {
-        // Rows of the damping of later variables are still empty.
-        let end = 7 + k;
-        let mut mirror = m[k];
-        let mut square = 0.0;
-        for x in &mirror[k..end] {
-            square += x * x;
-        }
-        let length = if mirror[k] < 0.0 { -sqrt(square) } else { sqrt(square) };
-        diagonal[k] = -length;
-        let factor = 1.0 / (square + mirror[k].abs() * length.abs());
-        mirror[k] += length;
-        let reflect = |column: &mut [f64; ROWS]| {
-            let mut sum = 0.0;
-            for r in k..end {
-                sum += mirror[r] * column[r];
-            }
-            for r in k..end {
-                column[r] -= factor * sum * mirror[r];
-            }
-        };
-        for column in &mut m[k + 1..n] {
-            reflect(column);
-        }
-        reflect(&mut right);
-    }
-    let mut step = [0.0; MAX_JOINTS];
-    for i in (0..n).rev() {
-        let mut sum = right[i];
-        for j in i + 1..n {
-            sum -= m[j][i] * step[j];
-        }
-        step[i] = if held[i] { 0.0 } else { sum / diagonal[i] };
-    }
-    step
+	const ROWS: usize = 6 + MAX_JOINTS;
+	let root = sqrt(damping);
+	let mut m = [[0.0; ROWS]; MAX_JOINTS];
+	let mut right = [0.0; ROWS];
+	right[..6].copy_from_slice(error);
+	for i in 0..n {
+		if held[i] {
+			m[i][6 + i] = 1.0;
+		} else {
+			m[i][..6].copy_from_slice(&columns[i]);
+			m[i][6 + i] = root;
+		}
+	}
+	let mut diagonal = [0.0; MAX_JOINTS];
+	for k in 0..n {
+		// Rows of the damping of later variables are still empty.
+		let end = 7 + k;
+		let mut mirror = m[k];
+		let mut square = 0.0;
+		for x in &mirror[k..end] {
+			square += x * x;
+		}
+		let length = if mirror[k] < 0.0 { -sqrt(square) } else { sqrt(square) };
+		diagonal[k] = -length;
+		let factor = 1.0 / (square + mirror[k].abs() * length.abs());
+		mirror[k] += length;
+		let reflect = |column: &mut [f64; ROWS]| {
+			let mut sum = 0.0;
+			for r in k..end {
+				sum += mirror[r] * column[r];
+			}
+			for r in k..end {
+				column[r] -= factor * sum * mirror[r];
+			}
+		};
+		for column in &mut m[k + 1..n] {
+			reflect(column);
+		}
+		reflect(&mut right);
+	}
+	let mut step = [0.0; MAX_JOINTS];
+	for i in (0..n).rev() {
+		let mut sum = right[i];
+		for j in i + 1..n {
+			sum -= m[j][i] * step[j];
+		}
+		step[i] = if held[i] { 0.0 } else { sum / diagonal[i] };
+	}
+	step
 }
 }
 
@@ -972,98 +972,98 @@ pub const MOST_MISSES: usize = 256;
 /// The chain that solutions must satisfy.
 #[derive(Clone, Copy, Debug)]
 pub struct Arm<'a> {
-    /// Moving joints, base to tip.
-    pub links: &'a [Link],
-    /// Pose of the tip in the frame after the last joint.
-    pub last_from_tip: &'a Frame,
-    /// For each variable, whether it is a length.
-    pub slides: &'a [bool],
-    /// For each variable, whether the caller gave it.
-    pub held: &'a [bool],
+	/// Moving joints, base to tip.
+	pub links: &'a [Link],
+	/// Pose of the tip in the frame after the last joint.
+	pub last_from_tip: &'a Frame,
+	/// For each variable, whether it is a length.
+	pub slides: &'a [bool],
+	/// For each variable, whether the caller gave it.
+	pub held: &'a [bool],
 }
 
 /// Whether a candidate that misses by the roots of these squares (rotation, position) needs no polish.
 pub fn is_exact(misses: [f64; 2]) -> bool {
-    misses[0] <= EXACT * EXACT && misses[1] <= EXACT * EXACT
+	misses[0] <= EXACT * EXACT && misses[1] <= EXACT * EXACT
 }
 
 impl Arm<'_> {
-    /// `base_from_tip` for the `[cos, sin]` or `[length, _]` of each variable.
-    pub fn forward_steps(&self, steps: &[[f64; 2]]) -> Frame {
-        let mut moves = [[0.0; 2]; MAX_JOINTS];
-        for (link, step) in self.links.iter().zip(&mut moves) {
-            let [x, y] = steps[link.variable];
-            *step = if link.ratio == 1.0 {
-                [x, y]
-            } else if link.slides {
-                [link.ratio * x, 0.0]
-            } else {
-                cos_sin(link.ratio * angle_of(y, x))
-            };
-        }
-        forward(self.links, self.last_from_tip, &moves[..self.links.len()])
-    }
+	/// `base_from_tip` for the `[cos, sin]` or `[length, _]` of each variable.
+	pub fn forward_steps(&self, steps: &[[f64; 2]]) -> Frame {
+		let mut moves = [[0.0; 2]; MAX_JOINTS];
+		for (link, step) in self.links.iter().zip(&mut moves) {
+			let [x, y] = steps[link.variable];
+			*step = if link.ratio == 1.0 {
+				[x, y]
+			} else if link.slides {
+				[link.ratio * x, 0.0]
+			} else {
+				cos_sin(link.ratio * angle_of(y, x))
+			};
+		}
+		forward(self.links, self.last_from_tip, &moves[..self.links.len()])
+	}
 
-    /// `base_from_tip` at these variable values.
-    pub fn forward_values(&self, values: &[f64]) -> Frame {
-        let mut steps = [[0.0; 2]; MAX_JOINTS];
-        for (i, value) in values.iter().enumerate() {
-            steps[i] = if self.slides[i] { [*value, 0.0] } else { cos_sin(*value) };
-        }
-        self.forward_steps(&steps[..values.len()])
-    }
+	/// `base_from_tip` at these variable values.
+	pub fn forward_values(&self, values: &[f64]) -> Frame {
+		let mut steps = [[0.0; 2]; MAX_JOINTS];
+		for (i, value) in values.iter().enumerate() {
+			steps[i] = if self.slides[i] { [*value, 0.0] } else { cos_sin(*value) };
+		}
+		self.forward_steps(&steps[..values.len()])
+	}
 
-    /// Turns a candidate into variable values that reach the pose; says whether they do.
-    ///
-    /// `values` holds the given ones on entry.
-    pub fn settle(&self, base_from_tip: &Frame, steps: &[[f64; 2]], values: &mut [f64]) -> bool {
-        let distance = self.forward_steps(steps).distance(base_from_tip);
-        if !(distance < f64::INFINITY) {
-            return false;
-        }
-        for i in 0..values.len() {
-            if !self.held[i] {
-                values[i] = if self.slides[i] { steps[i][0] } else { angle_of(steps[i][1], steps[i][0]) };
-            }
-        }
-        if distance <= EXACT {
-            return true;
-        }
-        if !(polish(self.links, self.last_from_tip, base_from_tip, values, self.held) < TOLERANCE) {
-            return false;
-        }
-        for i in 0..values.len() {
-            if !self.slides[i] && !self.held[i] {
-                values[i] = principal(values[i]);
-            }
-        }
-        true
-    }
+	/// Turns a candidate into variable values that reach the pose; says whether they do.
+	///
+	/// `values` holds the given ones on entry.
+	pub fn settle(&self, base_from_tip: &Frame, steps: &[[f64; 2]], values: &mut [f64]) -> bool {
+		let distance = self.forward_steps(steps).distance(base_from_tip);
+		if !(distance < f64::INFINITY) {
+			return false;
+		}
+		for i in 0..values.len() {
+			if !self.held[i] {
+				values[i] = if self.slides[i] { steps[i][0] } else { angle_of(steps[i][1], steps[i][0]) };
+			}
+		}
+		if distance <= EXACT {
+			return true;
+		}
+		if !(polish(self.links, self.last_from_tip, base_from_tip, values, self.held) < TOLERANCE) {
+			return false;
+		}
+		for i in 0..values.len() {
+			if !self.slides[i] && !self.held[i] {
+				values[i] = principal(values[i]);
+			}
+		}
+		true
+	}
 
-    /// Whether two solutions are the same one.
-    pub fn same(&self, a: &[f64], b: &[f64]) -> bool {
-        for i in 0..a.len() {
-            let gap = (a[i] - b[i]).abs();
-            let turned = (gap - core::f64::consts::TAU).abs();
-            if gap >= SAME && (self.slides[i] || turned >= SAME) {
-                return false;
-            }
-        }
-        true
-    }
+	/// Whether two solutions are the same one.
+	pub fn same(&self, a: &[f64], b: &[f64]) -> bool {
+		for i in 0..a.len() {
+			let gap = (a[i] - b[i]).abs();
+			let turned = (gap - core::f64::consts::TAU).abs();
+			if gap >= SAME && (self.slides[i] || turned >= SAME) {
+				return false;
+			}
+		}
+		true
+	}
 }
 
 /// The same angle in (-pi, pi].
 fn principal(angle: f64) -> f64 {
-    use core::f64::consts::{PI, TAU};
-    let mut turned = angle;
-    while turned > PI {
-        turned -= TAU;
-    }
-    while turned <= -PI {
-        turned += TAU;
-    }
-    turned
+	use core::f64::consts::{PI, TAU};
+	let mut turned = angle;
+	while turned > PI {
+		turned -= TAU;
+	}
+	while turned <= -PI {
+		turned += TAU;
+	}
+	turned
 }
 }
 
@@ -1089,246 +1089,246 @@ const SMALLEST: f64 = 1e-3;
 /// Infinitely many solutions through one.
 #[derive(Clone, Copy, Debug)]
 pub struct Family {
-    /// Which joints move together: 0 for those that stay, 1 for the leading one, radians or metres.
-    pub direction: [f64; MAX_JOINTS],
-    /// The leading joint.
-    pub leader: usize,
-    /// Whether `solution + t direction` reaches the pose for every `t`; otherwise the family is a curve that starts in that direction, and
-    /// `t` is how far the leading joint has moved.
-    pub line: bool,
-    /// Smallest and largest `t`, zero inside; from -pi to pi when the family closes.
-    pub interval: [f64; 2],
+	/// Which joints move together: 0 for those that stay, 1 for the leading one, radians or metres.
+	pub direction: [f64; MAX_JOINTS],
+	/// The leading joint.
+	pub leader: usize,
+	/// Whether `solution + t direction` reaches the pose for every `t`; otherwise the family is a curve that starts in that direction, and
+	/// `t` is how far the leading joint has moved.
+	pub line: bool,
+	/// Smallest and largest `t`, zero inside; from -pi to pi when the family closes.
+	pub interval: [f64; 2],
 }
 
 /// The families through one solution.
 #[derive(Clone, Copy, Debug)]
 pub struct Families {
-    items: [Family; MAX_JOINTS],
-    len: usize,
+	items: [Family; MAX_JOINTS],
+	len: usize,
 }
 
 impl Families {
-    /// All of them.
-    pub fn as_slice(&self) -> &[Family] {
-        &self.items[..self.len]
-    }
+	/// All of them.
+	pub fn as_slice(&self) -> &[Family] {
+		&self.items[..self.len]
+	}
 }
 
 /// The families through a solution.
 pub fn families_of(arm: &Arm<'_>, base_from_tip: &Frame, solution: &[f64]) -> Families {
-    use core::f64::consts::PI;
-    let none = Family { direction: [0.0; MAX_JOINTS], leader: 0, line: false, interval: [0.0; 2] };
-    let mut found = Families { items: [none; MAX_JOINTS], len: 0 };
-    let (still, count) = still_directions(arm, base_from_tip, solution);
-    for (direction, leader) in &still[..count] {
-        let mut family = Family { direction: *direction, leader: *leader, line: true, interval: [-PI, PI] };
-        for i in 0..solution.len() {
-            family.line = family.line && (direction[i] == 0.0 || !arm.slides[i]);
-        }
-        for t in [0.05, -0.4, 1.1, -2.0, 2.9] {
-            let at = along(solution, direction, t);
-            let distance = arm.forward_values(&at[..solution.len()]).distance(base_from_tip);
-            family.line = family.line && distance < TOLERANCE;
-        }
-        if !family.line {
-            for end in 0..2 {
-                let mut at = along(solution, direction, 0.0);
-                let t = family.interval[end];
-                family.interval[end] =
-                    follow(arm, base_from_tip, &family, &mut at[..solution.len()], t, SMALLEST);
-            }
-        }
-        if family.line || family.interval[1] - family.interval[0] > STEP {
-            found.items[found.len] = family;
-            found.len += 1;
-        }
-    }
-    found
+	use core::f64::consts::PI;
+	let none = Family { direction: [0.0; MAX_JOINTS], leader: 0, line: false, interval: [0.0; 2] };
+	let mut found = Families { items: [none; MAX_JOINTS], len: 0 };
+	let (still, count) = still_directions(arm, base_from_tip, solution);
+	for (direction, leader) in &still[..count] {
+		let mut family = Family { direction: *direction, leader: *leader, line: true, interval: [-PI, PI] };
+		for i in 0..solution.len() {
+			family.line = family.line && (direction[i] == 0.0 || !arm.slides[i]);
+		}
+		for t in [0.05, -0.4, 1.1, -2.0, 2.9] {
+			let at = along(solution, direction, t);
+			let distance = arm.forward_values(&at[..solution.len()]).distance(base_from_tip);
+			family.line = family.line && distance < TOLERANCE;
+		}
+		if !family.line {
+			for end in 0..2 {
+				let mut at = along(solution, direction, 0.0);
+				let t = family.interval[end];
+				family.interval[end] =
+					follow(arm, base_from_tip, &family, &mut at[..solution.len()], t, SMALLEST);
+			}
+		}
+		if family.line || family.interval[1] - family.interval[0] > STEP {
+			found.items[found.len] = family;
+			found.len += 1;
+		}
+	}
+	found
 }
 
 /// Brings `values` from the solution to the member at `t`, angles not brought back to (-pi, pi]; says whether there is one.
 pub fn member_of(arm: &Arm<'_>, base_from_tip: &Frame, family: &Family, values: &mut [f64], t: f64) -> bool {
-    let [low, high] = family.interval;
-    // Rounding at an end is not outside.
-    if !(low - TOLERANCE <= t && t <= high + TOLERANCE) {
-        return false;
-    }
-    let t = t.clamp(low, high);
-    if family.line {
-        let at = along(values, &family.direction, t);
-        values.copy_from_slice(&at[..values.len()]);
-        return true;
-    }
-    follow(arm, base_from_tip, family, values, t, 0.5 * SMALLEST) == t
+	let [low, high] = family.interval;
+	// Rounding at an end is not outside.
+	if !(low - TOLERANCE <= t && t <= high + TOLERANCE) {
+		return false;
+	}
+	let t = t.clamp(low, high);
+	if family.line {
+		let at = along(values, &family.direction, t);
+		values.copy_from_slice(&at[..values.len()]);
+		return true;
+	}
+	follow(arm, base_from_tip, family, values, t, 0.5 * SMALLEST) == t
 }
 
 fn along(values: &[f64], direction: &[f64; MAX_JOINTS], t: f64) -> [f64; MAX_JOINTS] {
-    let mut at = [0.0; MAX_JOINTS];
-    for i in 0..values.len() {
-        at[i] = values[i] + t * direction[i];
-    }
-    at
+	let mut at = [0.0; MAX_JOINTS];
+	for i in 0..values.len() {
+		at[i] = values[i] + t * direction[i];
+	}
+	at
 }
 
 /// Follows a curve until the leading joint has moved by `t`; returns how far it came. Steps are no smaller than `least`.
 fn follow(
-    arm: &Arm<'_>,
-    base_from_tip: &Frame,
-    family: &Family,
-    values: &mut [f64],
-    t: f64,
-    least: f64,
+	arm: &Arm<'_>,
+	base_from_tip: &Frame,
+	family: &Family,
+	values: &mut [f64],
+	t: f64,
+	least: f64,
 ) -> f64 {
-    let n = values.len();
-    let mut held = [false; MAX_JOINTS];
-    held[..n].copy_from_slice(arm.held);
-    held[family.leader] = true;
-    let (mut last, mut gone, mut step) = (family.direction, 0.0, STEP);
-    let sign = if t < 0.0 { -1.0 } else { 1.0 };
-    while gone < t.abs() && step >= least {
-        let rest = t.abs() - gone;
-        let by = sign * if step < rest { step } else { rest };
-        let wanted = along(values, &last, by);
-        let mut next = wanted;
-        let left = polish(arm.links, arm.last_from_tip, base_from_tip, &mut next[..n], &held[..n]);
-        let mut near = left < TOLERANCE;
-        for i in 0..n {
-            near = near && (next[i] - wanted[i]).abs() < 4.0 * STEP;
-        }
-        if near {
-            for i in 0..n {
-                last[i] = (next[i] - values[i]) / by;
-            }
-            values.copy_from_slice(&next[..n]);
-            gone = if step < rest { gone + step } else { t.abs() };
-        } else {
-            step *= 0.5;
-        }
-    }
-    sign * gone
+	let n = values.len();
+	let mut held = [false; MAX_JOINTS];
+	held[..n].copy_from_slice(arm.held);
+	held[family.leader] = true;
+	let (mut last, mut gone, mut step) = (family.direction, 0.0, STEP);
+	let sign = if t < 0.0 { -1.0 } else { 1.0 };
+	while gone < t.abs() && step >= least {
+		let rest = t.abs() - gone;
+		let by = sign * if step < rest { step } else { rest };
+		let wanted = along(values, &last, by);
+		let mut next = wanted;
+		let left = polish(arm.links, arm.last_from_tip, base_from_tip, &mut next[..n], &held[..n]);
+		let mut near = left < TOLERANCE;
+		for i in 0..n {
+			near = near && (next[i] - wanted[i]).abs() < 4.0 * STEP;
+		}
+		if near {
+			for i in 0..n {
+				last[i] = (next[i] - values[i]) / by;
+			}
+			values.copy_from_slice(&next[..n]);
+			gone = if step < rest { gone + step } else { t.abs() };
+		} else {
+			step *= 0.5;
+		}
+	}
+	sign * gone
 }
 
 /// A basis of the directions in which the joints move and the tip does not, to first order, and how many there are: each with its leading
 /// joint, whose entry is 1 and 0 in the others. Joints that the caller gave stay.
 fn still_directions(
-    arm: &Arm<'_>,
-    base_from_tip: &Frame,
-    values: &[f64],
+	arm: &Arm<'_>,
+	base_from_tip: &Frame,
+	values: &[f64],
 ) -> ([([f64; MAX_JOINTS], usize); MAX_JOINTS], usize) {
-    let (_, _, mut columns) = linearise(arm.links, arm.last_from_tip, base_from_tip, values);
-    let mut joints = [0; MAX_JOINTS];
-    let mut n = 0;
-    for i in 0..values.len() {
-        if !arm.held[i] {
-            (joints[n], columns[n]) = (i, columns[i]);
-            n += 1;
-        }
-    }
-    // Elimination with the largest entry of what is left as pivot.
-    let mut rank = 0;
-    while rank < n && rank < 6 {
-        let (mut column, mut row) = (rank, rank);
-        for c in rank..n {
-            for r in rank..6 {
-                if columns[c][r].abs() > columns[column][row].abs() {
-                    (column, row) = (c, r);
-                }
-            }
-        }
-        if columns[column][row].abs() < SINGULAR {
-            break;
-        }
-        columns.swap(rank, column);
-        joints.swap(rank, column);
-        for c in &mut columns[..n] {
-            c.swap(rank, row);
-        }
-        for r in rank + 1..6 {
-            let factor = columns[rank][r] / columns[rank][rank];
-            for c in &mut columns[rank..n] {
-                c[r] -= factor * c[rank];
-            }
-        }
-        rank += 1;
-    }
-    let mut found = [([0.0; MAX_JOINTS], 0); MAX_JOINTS];
-    let count = n - rank;
-    for k in 0..count {
-        let mut x = [0.0; MAX_JOINTS];
-        x[rank + k] = 1.0;
-        for r in (0..rank).rev() {
-            let mut sum = 0.0;
-            for c in r + 1..n {
-                sum += columns[c][r] * x[c];
-            }
-            x[r] = -sum / columns[r][r];
-        }
-        for c in 0..n {
-            found[k].0[joints[c]] = x[c];
-        }
-    }
-    for k in 0..count {
-        // The largest entry leads, of equal ones the last: dividing by it loses nothing.
-        let (mut row, mut leader) = (found[k].0, 0);
-        for i in 0..values.len() {
-            if row[i].abs() >= row[leader].abs() * (1.0 - 1e-6) {
-                leader = i;
-            }
-        }
-        row = row.map(|x| x / row[leader]);
-        for other in 0..count {
-            let factor = found[other].0[leader];
-            for i in 0..values.len() {
-                found[other].0[i] -= factor * row[i];
-            }
-        }
-        found[k] = (row, leader);
-    }
-    // Rounding of the elimination; what is meant is checked on the chain.
-    for (direction, _) in &mut found[..count] {
-        for x in direction {
-            for whole in [-1.0, 0.0, 1.0] {
-                if (*x - whole).abs() < 1e-7 {
-                    *x = whole;
-                }
-            }
-        }
-    }
-    (found, count)
+	let (_, _, mut columns) = linearise(arm.links, arm.last_from_tip, base_from_tip, values);
+	let mut joints = [0; MAX_JOINTS];
+	let mut n = 0;
+	for i in 0..values.len() {
+		if !arm.held[i] {
+			(joints[n], columns[n]) = (i, columns[i]);
+			n += 1;
+		}
+	}
+	// Elimination with the largest entry of what is left as pivot.
+	let mut rank = 0;
+	while rank < n && rank < 6 {
+		let (mut column, mut row) = (rank, rank);
+		for c in rank..n {
+			for r in rank..6 {
+				if columns[c][r].abs() > columns[column][row].abs() {
+					(column, row) = (c, r);
+				}
+			}
+		}
+		if columns[column][row].abs() < SINGULAR {
+			break;
+		}
+		columns.swap(rank, column);
+		joints.swap(rank, column);
+		for c in &mut columns[..n] {
+			c.swap(rank, row);
+		}
+		for r in rank + 1..6 {
+			let factor = columns[rank][r] / columns[rank][rank];
+			for c in &mut columns[rank..n] {
+				c[r] -= factor * c[rank];
+			}
+		}
+		rank += 1;
+	}
+	let mut found = [([0.0; MAX_JOINTS], 0); MAX_JOINTS];
+	let count = n - rank;
+	for k in 0..count {
+		let mut x = [0.0; MAX_JOINTS];
+		x[rank + k] = 1.0;
+		for r in (0..rank).rev() {
+			let mut sum = 0.0;
+			for c in r + 1..n {
+				sum += columns[c][r] * x[c];
+			}
+			x[r] = -sum / columns[r][r];
+		}
+		for c in 0..n {
+			found[k].0[joints[c]] = x[c];
+		}
+	}
+	for k in 0..count {
+		// The largest entry leads, of equal ones the last: dividing by it loses nothing.
+		let (mut row, mut leader) = (found[k].0, 0);
+		for i in 0..values.len() {
+			if row[i].abs() >= row[leader].abs() * (1.0 - 1e-6) {
+				leader = i;
+			}
+		}
+		row = row.map(|x| x / row[leader]);
+		for other in 0..count {
+			let factor = found[other].0[leader];
+			for i in 0..values.len() {
+				found[other].0[i] -= factor * row[i];
+			}
+		}
+		found[k] = (row, leader);
+	}
+	// Rounding of the elimination; what is meant is checked on the chain.
+	for (direction, _) in &mut found[..count] {
+		for x in direction {
+			for whole in [-1.0, 0.0, 1.0] {
+				if (*x - whole).abs() < 1e-7 {
+					*x = whole;
+				}
+			}
+		}
+	}
+	(found, count)
 }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+	use super::*;
 
-    /// Every pose of a joint vector is solved, all answers reach their pose, and the joint vector is among them: of a hundred at most
-    /// one, near a singular pose, may be found by other answers alone.
-    #[test]
-    fn solves_the_poses_of_joint_vectors() {
-        let mut bits = 88172645463325252u64;
-        let mut found = Solutions::new();
-        let mut again = 0;
-        for _ in 0..300 {
-            let values: [f64; VARIABLES] = core::array::from_fn(|v| {
-                bits ^= bits << 13;
-                bits ^= bits >> 7;
-                bits ^= bits << 17;
-                let unit = (bits >> 11) as f64 / (1u64 << 53) as f64;
-                (2.0 * unit - 1.0) * if SLIDES[v] { 1.0 } else { 3.1 }
-            });
-            let pose = forward(&values);
-            solve(&pose, &FREE.map(|v| values[v]), &mut found);
-            let near = |other: &[f64; VARIABLES]| {
-                (0..VARIABLES).all(|v| {
-                    let gap = (values[v] - other[v]).abs();
-                    gap < 1e-6 || (!SLIDES[v] && (gap - core::f64::consts::TAU).abs() < 1e-6)
-                })
-            };
-            assert!(!found.as_slice().is_empty());
-            again += usize::from(found.as_slice().iter().any(near));
-            assert!(found.as_slice().iter().all(|values| forward(values).distance(&pose) < 1e-9));
-        }
-        assert!(again >= 297);
-    }
+	/// Every pose of a joint vector is solved, all answers reach their pose, and the joint vector is among them: of a hundred at most
+	/// one, near a singular pose, may be found by other answers alone.
+	#[test]
+	fn solves_the_poses_of_joint_vectors() {
+		let mut bits = 88172645463325252u64;
+		let mut found = Solutions::new();
+		let mut again = 0;
+		for _ in 0..300 {
+			let values: [f64; VARIABLES] = core::array::from_fn(|v| {
+				bits ^= bits << 13;
+				bits ^= bits >> 7;
+				bits ^= bits << 17;
+				let unit = (bits >> 11) as f64 / (1u64 << 53) as f64;
+				(2.0 * unit - 1.0) * if SLIDES[v] { 1.0 } else { 3.1 }
+			});
+			let pose = forward(&values);
+			solve(&pose, &FREE.map(|v| values[v]), &mut found);
+			let near = |other: &[f64; VARIABLES]| {
+				(0..VARIABLES).all(|v| {
+					let gap = (values[v] - other[v]).abs();
+					gap < 1e-6 || (!SLIDES[v] && (gap - core::f64::consts::TAU).abs() < 1e-6)
+				})
+			};
+			assert!(!found.as_slice().is_empty());
+			again += usize::from(found.as_slice().iter().any(near));
+			assert!(found.as_slice().iter().all(|values| forward(values).distance(&pose) < 1e-9));
+		}
+		assert!(again >= 297);
+	}
 }

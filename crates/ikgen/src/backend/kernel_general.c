@@ -788,7 +788,7 @@ static double ik_refined(const ik_six_rows *six, const ik_waves *waves, const ik
 }
 
 /* The null space of the reduced system: vectors (t y, y); returns how many there are, three at most. */
-static int ik_null_space(const ik_six_rows *six, ik_turn turn, int most, double vectors[3][6])
+static int ik_null_space(const ik_six_rows *six, ik_turn turn, int most, double nothing, double vectors[3][6])
 {
     double m[36], largest = 0.0, pivot, factor, x[6], sum, swap;
     int columns[6] = { 0, 1, 2, 3, 4, 5 }, rank = 0, row, column, count, r, c, i;
@@ -804,7 +804,7 @@ static int ik_null_space(const ik_six_rows *six, ik_turn turn, int most, double 
         pivot = ik_abs(m[6 * row + column]);
         if (pivot > largest) largest = pivot;
         /* The system is singular, whatever rounding says. */
-        if (rank == 5 || (rank + most >= 6 && pivot <= 1e-6 * largest) || !(pivot > 0.0)) break;
+        if (rank == 5 || (rank + most >= 6 && pivot <= nothing * largest) || !(pivot > 0.0)) break;
         for (c = 0; c < 6; c++) {
             swap = m[6 * rank + c];
             m[6 * rank + c] = m[6 * row + c];
@@ -837,6 +837,13 @@ static int ik_null_space(const ik_six_rows *six, ik_turn turn, int most, double 
 }
 
 /* Half of a null vector. */
+/* Whether only one null vector is anywhere near: of two solutions that share the angle there are two. */
+static int ik_is_alone(const ik_six_rows *six, ik_turn turn)
+{
+    double vectors[3][6];
+    return ik_null_space(six, turn, 3, 1e-3, vectors) == 1;
+}
+
 static ik_vector ik_half_of(const double *v) { return ik_vector_of(v[0], v[1], v[2]); }
 
 /* The turn along the last two of y, whichever sign it has. */
@@ -852,7 +859,7 @@ static int ik_single(const ik_six_rows *six, ik_turn turn, ik_turn pair[2])
     double vectors[3][6], h, l, hl;
     ik_vector high, low;
     ik_turn half;
-    ik_null_space(six, turn, 1, vectors);
+    ik_null_space(six, turn, 1, 1e-6, vectors);
     high = ik_half_of(vectors[0]);
     low = ik_half_of(&vectors[0][3]);
     h = ik_dot(high, high);
@@ -892,7 +899,7 @@ static int ik_several(const ik_six_rows *six, ik_turn turn, ik_turn pairs[6][2],
 {
     double vectors[3][6], left[3][3], right[3][3], map[IK_SIZE][IK_SIZE] = { { 0.0 } }, values[IK_SIZE][2], rows[54];
     double factor, swap;
-    int n = ik_null_space(six, turn, 3, vectors), found, i, j, k, r, c;
+    int n = ik_null_space(six, turn, 3, 1e-6, vectors), found, i, j, k, r, c;
     *count = 0;
     if (n < 2) return n;
     /* high = low T, by normal equations, solved by elimination. */
@@ -1148,7 +1155,7 @@ static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int 
     ik_root roots[IK_SIZE];
     int count = ik_roots_of_waves(&waves, squared, roots), multiplicity = squared ? 2 : 1, apart = count * multiplicity == 2 * degree;
     int done[IK_SIZE] = { 0 }, near[IK_SIZE], together, pairs_found, fold, merged, many, i, j, k;
-    double least = IK_FLAT * waves.largest, flattest = 0.0, width = 1e-3, height, gap, square, shift, spread, mean, side;
+    double least = IK_FLAT * waves.largest, flattest = 0.0, width = 1e-3, height, gap, square, shift, spread, mean, side, exact, off;
     double starts[IK_SIZE], extremum[3];
     ik_turn turn, pairs[6][2];
     *flat = 0;
@@ -1180,23 +1187,23 @@ static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int 
         ik_extremum(&waves, mean, extremum);
         fold = together == 2 && !squared && slack == 0.0;
         many = 0;
-        if (together == 1 || (fold && ik_abs(extremum[1]) > IK_FLAT * waves.largest)) {
-            /* A root that is clear of others. Where they are not real the polynomial stays clear of zero. */
-            if (imaginary == 0.0 || together == 1) {
-                starts[0] = ik_refined(six, &waves, view, angle);
-                many = 1;
-            }
+        /* What the determinant itself is there also tells how far its waves are off. */
+        exact = fold ? ik_value_in_view(view, six, degree, extremum[0]) : extremum[1];
+        off = ik_abs(exact - extremum[1]) + IK_FLAT * waves.largest;
+        if (together == 1 || (fold && imaginary == 0.0 && ik_abs(exact) > off)) {
+            starts[0] = ik_refined(six, &waves, view, angle);
+            many = 1;
         } else {
             for (j = 0; j < count; j++) done[j] |= near[j];
             merged = spread < 1e-5 || squared;
             turn = ik_turn_in_view(view, mean, &square);
             k = ik_several(six, turn, pairs, &pairs_found);
             for (j = 0; j < pairs_found; j++) ik_add_candidate(loop, turn, pairs[j], found);
-            apart &= merged && (k == together || fold);
+            apart &= merged && (k == together || (fold && ik_is_alone(six, turn)));
             if (k == together && merged) continue;
             if (fold) {
                 /* Seen from outside of the two each leads to its own. */
-                side = ik_sqrt(2.0 * (ik_abs(extremum[1]) + 1e-14 * waves.largest) / ik_abs(extremum[2]));
+                side = ik_sqrt(2.0 * (ik_abs(exact) + 1e-14 * waves.largest) / ik_abs(extremum[2]));
                 starts[0] = extremum[0] - side;
                 starts[1] = extremum[0] + side;
                 many = 2;

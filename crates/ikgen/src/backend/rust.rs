@@ -30,6 +30,19 @@ pub fn rust_source(program: &Program, chain: &TrueChain, options: &RustOptions) 
     out += &code;
     kernel(options, &mut out);
     out += &tests(program);
+    tabbed(&out)
+}
+
+/// Indented by tabs: in nested loops blanks would be a sixth of the file.
+fn tabbed(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for line in text.lines() {
+        let code = line.trim_start_matches(' ');
+        let blanks = line.len() - code.len();
+        out.extend(std::iter::repeat_n('\t', blanks / 4).chain(std::iter::repeat_n(' ', blanks % 4)));
+        out += code;
+        out.push('\n');
+    }
     out
 }
 

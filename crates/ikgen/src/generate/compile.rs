@@ -102,7 +102,7 @@ impl Compiled {
 
     /// A solver for the chain that was compiled.
     pub fn solver(&self) -> Solver {
-        Solver::new(self.program.clone(), &self.chain).expect("the program ran during compilation")
+        Solver::of_longer(self.program.clone(), &self.longer).expect("the program ran during compilation")
     }
 
     /// The program as one Rust source file.

@@ -28,6 +28,16 @@ fn note(block: &mut Block, exprs: &mut Exprs, reach: f64) {
                 }
                 note(body, exprs, reach);
             }
+            // What an ideal chain can do where it lines up, the described one can hardly: that is for the general solver.
+            Stmt::Fallback { first, otherwise }
+                if let [Stmt::IfZero { value, tolerance, otherwise: none, .. }] = &otherwise[..]
+                    && none.is_empty() =>
+            {
+                noted.push(Stmt::Doubt { value: *value, tolerance: *tolerance });
+                note(first, exprs, reach);
+                noted.append(first);
+                continue;
+            }
             Stmt::IfZero { then, otherwise, .. } | Stmt::Fallback { first: then, otherwise } => {
                 note(then, exprs, reach);
                 note(otherwise, exprs, reach);

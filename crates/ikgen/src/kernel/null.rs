@@ -9,6 +9,9 @@ use super::waves::Waves;
 /// A pivot that is smaller than this part of the first one counts as zero.
 const NOTHING: f64 = 1e-6;
 
+/// A pivot that is larger than this part is clear of zero.
+const NEARLY_NOTHING: f64 = 1e-3;
+
 /// The turn whose half tangent was eliminated, and the one beside it.
 pub type Pair = [[f64; 2]; 2];
 
@@ -36,8 +39,9 @@ pub fn refined(six: &Six, waves: &Waves, view: &View, start: f64) -> f64 {
     q
 }
 
-/// The null space of the reduced system: vectors `(t y, y)`, and how many there are, three at most.
-fn null_space(six: &Six, turn: [f64; 2], most: usize) -> ([[f64; 6]; 3], usize) {
+/// The null space of the reduced system: vectors `(t y, y)`, and how many there are, three at most; pivots below the part `nothing` of the
+/// first one count as zero.
+fn null_space(six: &Six, turn: [f64; 2], most: usize, nothing: f64) -> ([[f64; 6]; 3], usize) {
     let mut m = reduced(six, turn).rows;
     let mut columns = [0, 1, 2, 3, 4, 5];
     let (mut rank, mut largest) = (0, 0.0f64);
@@ -53,7 +57,7 @@ fn null_space(six: &Six, turn: [f64; 2], most: usize) -> ([[f64; 6]; 3], usize) 
         let pivot = m[row][column].abs();
         largest = largest.max(pivot);
         // The system is singular, whatever rounding says.
-        if rank == 5 || (rank + most >= 6 && pivot <= NOTHING * largest) || pivot == 0.0 {
+        if rank == 5 || (rank + most >= 6 && pivot <= nothing * largest) || pivot == 0.0 {
             break;
         }
         m.swap(rank, row);
@@ -94,7 +98,7 @@ fn halves(v: &[f64; 6]) -> (Vector, Vector) {
 
 /// The pair at a simple root.
 pub fn single(six: &Six, turn: [f64; 2]) -> Option<Pair> {
-    let (vectors, _) = null_space(six, turn, 1);
+    let (vectors, _) = null_space(six, turn, 1, NOTHING);
     let (high, low) = halves(&vectors[0]);
     let (h, l, hl) = (dot(high, high), dot(low, low), dot(high, low));
     let (half, y) = if h > l { (unit(hl, h, 0.0)?, high) } else { (unit(l, hl, 0.0)?, low) };
@@ -102,12 +106,17 @@ pub fn single(six: &Six, turn: [f64; 2]) -> Option<Pair> {
     Some([turn_of_half(half), unit(sign * y[1], sign * y[2], 0.0)?])
 }
 
+/// Whether only one null vector is anywhere near: of two solutions that share the angle there are two.
+pub fn is_alone(six: &Six, turn: [f64; 2]) -> bool {
+    null_space(six, turn, 3, NEARLY_NOTHING).1 == 1
+}
+
 /// The pairs at a root where several solutions share the angle: as many null vectors as there are solutions, mixed. Multiplication
 /// by `t` maps their space to itself, and its eigenvalues are the values of `t`.
 ///
 /// Returns the dimension of the null space; a space of one dimension gives no pairs.
 pub fn several(six: &Six, turn: [f64; 2], mut found: impl FnMut(Pair)) -> usize {
-    let (vectors, n) = null_space(six, turn, 3);
+    let (vectors, n) = null_space(six, turn, 3, NOTHING);
     if n < 2 {
         return n;
     }

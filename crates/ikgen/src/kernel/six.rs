@@ -18,7 +18,7 @@
 use super::eigen::MAX_SIZE;
 use super::elimination::{Six, View, eliminate};
 use super::math::{cos_sin, sqrt};
-use super::null::{Pair, refined, several, single};
+use super::null::{Pair, is_alone, refined, several, single};
 use super::vector::{Line, Motion, Vector, back, cross, dot, minus, plus, times, unit};
 use super::waves::{MAX_DEGREE, Root, Waves};
 
@@ -292,24 +292,24 @@ fn look(
         let mean = angle + shift * multiplicity as f64 / together as f64;
         let [extremum, value, bend] = waves.extremum(mean);
         let fold = together == 2 && !order.squared && slack == 0.0;
-        if together == 1 || fold && value.abs() > FLAT * waves.largest {
-            // A root that is clear of others. Where they are not real the polynomial stays clear of zero.
-            if imaginary == 0.0 || together == 1 {
-                starts[0] = refined(six, &waves, view, angle);
-                many = 1;
-            }
+        // What the determinant itself is there also tells how far its waves are off.
+        let exact = if fold { view.value(six, order.degree, extremum) } else { value };
+        let off = (exact - value).abs() + FLAT * waves.largest;
+        if together == 1 || fold && imaginary == 0.0 && exact.abs() > off {
+            starts[0] = refined(six, &waves, view, angle);
+            many = 1;
         } else {
             done.iter_mut().zip(near).for_each(|(done, near)| *done |= near);
             let merged = spread < MERGED || order.squared;
             let (turn, _) = view.turn(mean);
             let all = several(six, turn, |pair| add(turn, pair)) == together;
-            apart &= merged && (all || fold);
+            apart &= merged && (all || fold && is_alone(six, turn));
             if all && merged {
                 continue;
             }
             if fold {
                 // Seen from outside of the two each leads to its own.
-                let side = sqrt(2.0 * (value.abs() + ROUNDING * waves.largest) / bend.abs());
+                let side = sqrt(2.0 * (exact.abs() + ROUNDING * waves.largest) / bend.abs());
                 starts[..2].copy_from_slice(&[extremum - side, extremum + side]);
                 many = 2;
             } else {

@@ -103,8 +103,8 @@ impl Solver {
             let frames: Vec<(Frame, &[f64])> =
                 poses.iter().enumerate().map(|(i, pose)| (frame(pose), given_of(i))).collect();
             let outcome = match self.engine {
-                Engine::Bytecode => run.run(&frames),
-                Engine::Interpreter => lanes::Outcome { unfinished: u8::MAX, empty: 0 },
+                Engine::Bytecode if self.general.is_none() => run.run(&frames),
+                _ => lanes::Outcome { unfinished: u8::MAX, empty: 0 },
             };
             for (i, (frame, given)) in frames.iter().enumerate() {
                 let (unfinished, empty) = (outcome.unfinished >> i & 1 == 1, outcome.empty >> i & 1 == 1);

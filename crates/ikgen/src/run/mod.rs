@@ -4,6 +4,7 @@
 mod batch;
 pub mod bytecode;
 mod families;
+mod general;
 pub mod interpreter;
 mod lanes;
 mod redundancy;

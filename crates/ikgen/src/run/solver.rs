@@ -4,6 +4,7 @@ use robotc_core::Pose;
 use robotc_core::ik::{IkSolutions, InverseKinematics, PreferenceError, Preferences, VariableRange};
 use robotc_core::model::SerialChain;
 
+use super::general::General;
 use super::{Bytecode, Candidate, TooLarge, TrueChain, Verdict, frame, interpreter};
 use crate::ir::{Program, TextError};
 use crate::kernel::candidate::{MOST_MISSES, WIDER, is_exact};
@@ -55,16 +56,29 @@ pub struct Solver {
     pub(super) ranges: Vec<VariableRange>,
     /// Smallest values of the joints that the goal type adds.
     least: [f64; MAX_JOINTS],
+    /// Asked besides, where the chain is not the one that the program was written for.
+    pub(super) general: Option<General>,
 }
+
+/// A chain is another than the one that a program was written for where candidates miss it by more than this, and than so many times
+/// what the ideal chain of the program is off.
+const OTHER: (f64, f64) = (1e-7, 100.0);
 
 impl Solver {
     /// A solver from a program and the chain it is to run on.
+    ///
+    /// If that is another one than the program was written for, a calibrated one, and six of its joints turn and are not given, the
+    /// general solver of six joints is asked too, on the chain as it is.
     pub fn new(program: Program, chain: &SerialChain) -> Result<Self, LoadError> {
         let longer = program.goal.extended(chain);
-        Self::of_longer(program, &longer)
+        let mut solver = Self::of_longer(program, &longer)?;
+        if solver.program.goal == crate::GoalType::default() && solver.is_other_chain() {
+            solver.general = General::new(&solver.chain, &solver.held);
+        }
+        Ok(solver)
     }
 
-    /// As [`new`](Self::new), of a chain with the joints that the goal type adds.
+    /// The program alone, on a chain with the joints that the goal type adds.
     pub(crate) fn of_longer(program: Program, chain: &SerialChain) -> Result<Self, LoadError> {
         let true_chain = TrueChain::new(chain).ok_or(LoadError::Joints(chain.joints.len()))?;
         if true_chain.variables != program.variables {
@@ -78,7 +92,7 @@ impl Solver {
         let joints = program.chain_variables();
         let mut least = [f64::NEG_INFINITY; MAX_JOINTS];
         least[joints..program.variables].copy_from_slice(&program.goal.least());
-        Ok(Self {
+        let solver = Self {
             code: Bytecode::for_chain(&program, &true_chain)?,
             program,
             chain: true_chain,
@@ -86,7 +100,28 @@ impl Solver {
             held,
             ranges: VariableRange::of(chain)[..joints].to_vec(),
             least,
-        })
+            general: None,
+        };
+        Ok(solver)
+    }
+
+    /// Whether the program was written for another chain than that of this solver: its candidates for some poses all miss.
+    fn is_other_chain(&self) -> bool {
+        let (all, limit) = (self.program.variables, OTHER.0.max(OTHER.1 * self.program.snap));
+        let arm = self.chain.arm(&self.held[..all]);
+        let mut rng = robotc_core::Seed::new(0).split("ikgen other chain").rng();
+        let mut misses = || {
+            let values: [f64; MAX_JOINTS] = std::array::from_fn(|_| rng.range(-1.5, 1.5));
+            let pose = arm.forward_values(&values[..all]);
+            let free: Vec<f64> = self.program.free.iter().map(|v| values[*v]).collect();
+            let mut least = f64::INFINITY;
+            self.code.run(&pose, &free, self.program.slack, &mut |candidate: &Candidate| {
+                least = least.min(arm.forward_steps(&candidate.steps[..all]).distance(&pose));
+                Verdict::Wrong
+            });
+            least > limit
+        };
+        (0..4).filter(|_| misses()).count() > 2
     }
 
     /// A solver from the text form of a program, as the knowledge base stores it.
@@ -209,7 +244,7 @@ impl Solver {
             out.push(values);
             if enough(values) { Verdict::Last } else { Verdict::Accepted }
         };
-        match self.engine {
+        let mut accepted = match self.engine {
             Engine::Bytecode => self.code.run(base_from_tip, free, slack, &mut |candidate: &Candidate| {
                 let mut values = candidate.values;
                 let right = looks()
@@ -227,7 +262,21 @@ impl Solver {
                     keep(right, &values[..all])
                 })
             }
+        };
+        if let Some(general) = self.general.as_ref().filter(|_| slack == self.program.slack) {
+            let mut given = [0.0; MAX_JOINTS];
+            for (variable, value) in self.program.free.iter().zip(free) {
+                given[*variable] = *value;
+            }
+            general.candidates(&self.chain, &self.held, base_from_tip, &given, |steps| {
+                let mut values = given;
+                let right = arm.settle(base_from_tip, steps, &mut values[..all]);
+                let verdict = keep(right, &values[..all]);
+                accepted += usize::from(verdict != Verdict::Wrong);
+                verdict != Verdict::Last
+            });
         }
+        accepted
     }
 }
 
