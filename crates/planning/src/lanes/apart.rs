@@ -73,14 +73,15 @@ impl Apart {
 
     /// Whether the two stay apart all along the motion by `difference` from `from`. "Yes" is certain.
     pub(super) fn holds(&self, from: &[f64], difference: &[f64]) -> bool {
-        self.piece(from, difference, 0.0, 1.0)
+        self.holds_within(from, difference, 0.0, 1.0)
             || (0..PIECES).all(|i| {
                 let share = 1.0 / PIECES as f64;
-                self.piece(from, difference, i as f64 * share, (i + 1) as f64 * share)
+                self.holds_within(from, difference, i as f64 * share, (i + 1) as f64 * share)
             })
     }
 
-    fn piece(&self, from: &[f64], difference: &[f64], start: f64, end: f64) -> bool {
+    /// Whether the two stay apart within a stretch of the motion, from one fraction of it to another. "Yes" is certain.
+    pub(super) fn holds_within(&self, from: &[f64], difference: &[f64], start: f64, end: f64) -> bool {
         let mut corners = [(0, 0); CELLS.len()];
         for (corner, axis) in corners.iter_mut().zip(&self.axes) {
             let at = |t: f64| from[axis.column] + t * difference[axis.column];

@@ -1,5 +1,6 @@
 //! The edge checker over the lane kernel: whole motions proven free, or shown to be blocked.
 
+use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
 use robotc_core::geom::{ConvexPart, contact, distance, separation};
 use robotc_core::ids::Idx;
@@ -7,7 +8,7 @@ use robotc_core::{BodyIdx, Pose};
 
 use super::Width;
 use super::glance::{Glance, Meeting, View, glance};
-use super::kernel::{Around, Close, MOST_LANES, Motion, Scratch, look};
+use super::kernel::{Around, Close, Line, MOST_LANES, Motion, Scratch, look};
 use super::mechanism::{Body, Group, LaneRobot, number_of};
 use super::obstacle::Obstacle;
 use crate::edge::{Blocked, EdgeChecker, Obstruction, Patience};
@@ -168,6 +169,7 @@ impl<'a> LaneChecker<'a> {
         let pass = Pass {
             robot: self.robot,
             around,
+            from,
             work: &mut *self.work,
             stretches: &mut self.statistics.stretches,
         };
@@ -211,38 +213,45 @@ impl<'a> LaneChecker<'a> {
 
     /// Decides by the convex parts whether two things that are close stay apart within a stretch.
     fn settle(&mut self, from: &[f64], middle: f64, half: f64, close: Close) -> Result<(), Blocked> {
-        let blocked = |fraction, by| Err(Blocked { fraction, by });
         let mut pieces = std::mem::take(&mut self.work.pieces);
         pieces.clear();
-        pieces.push((middle, half));
+        pieces.push((middle - half, middle + half));
         let speed = self.speed(close);
-        while let Some((middle, half)) = pieces.pop() {
-            let inside = |&(first, last, of): &(f64, f64, Close)| {
-                of == close && first <= middle - half && middle + half <= last
-            };
-            if self.work.proven.iter().any(inside) {
+        let mut outcome = Ok(());
+        while let Some((start, end)) = pieces.pop() {
+            let inside =
+                |&(first, last, of): &(f64, f64, Close)| of == close && first <= start && end <= last;
+            if self.work.proven.iter().any(inside) || self.is_known_apart(from, start, end, close) {
                 continue;
             }
-            let gap = self.gap(from, middle, close);
+            let middle = 0.5 * (start + end);
             self.statistics.distances += 1;
-            let known = gap / speed;
-            if gap > half * speed {
-                self.work.proven.push((middle - known, middle + known, close));
+            let room = self.room(from, middle, 2.0 * (end - start), speed, close);
+            if room.gap <= TOUCH {
+                outcome = Err(Blocked { fraction: middle, by: self.obstruction(close) });
+                break;
+            }
+            let (first, last) = (middle - room.before, middle + room.after);
+            if first < start && end < last {
+                self.work.proven.push((first, last, close));
                 continue;
             }
-            if gap <= TOUCH {
-                let by = self.obstruction(close);
-                self.work.pieces = pieces;
-                return blocked(middle, by);
+            if start <= first {
+                pieces.push((start, first));
             }
-            // What is known of the middle of this stretch leaves two pieces of it open.
-            let rest = 0.5 * (half - known);
-            for side in [-1.0, 1.0] {
-                pieces.push((middle + side * (known + rest), rest));
+            if last <= end {
+                pieces.push((last, end));
             }
         }
         self.work.pieces = pieces;
-        Ok(())
+        outcome
+    }
+
+    /// Whether the table of a pair says that the two stay apart within a stretch.
+    fn is_known_apart(&self, from: &[f64], start: f64, end: f64, close: Close) -> bool {
+        let Close::Pair(pair) = close else { return false };
+        let table = self.robot.pairs[pair as usize].apart.as_ref();
+        table.is_some_and(|table| table.holds_within(from, &self.work.difference, start, end))
     }
 
     /// A bound on how fast two things come together, metres per motion.
@@ -256,10 +265,11 @@ impl<'a> LaneChecker<'a> {
         }
     }
 
-    /// How much nearer two things may come to each other from where they are at a fraction of the motion, at least.
-    fn gap(&mut self, from: &[f64], fraction: f64, close: Close) -> f64 {
+    /// How long two things that are where they are at a fraction of the motion stay apart, at least: no longer than `most` is looked
+    /// for. `speed` is that at which they come together at most.
+    fn room(&mut self, from: &[f64], fraction: f64, most: f64, speed: f64, close: Close) -> Room {
         let robot = self.robot;
-        let LaneMemory { values, difference, frames, .. } = &mut *self.work;
+        let LaneMemory { values, difference, frames, motion, .. } = &mut *self.work;
         // Often the next question is about the same state.
         let state = || from.iter().zip(difference.iter()).map(|(a, d)| a + fraction * d);
         if frames.is_empty() || !state().eq(values.iter().copied()) {
@@ -275,18 +285,38 @@ impl<'a> LaneChecker<'a> {
             let parts = of_link.into_iter().flatten().chain(of_held.into_iter().flatten());
             (frames[body.frame] * body.frame_from_body, parts)
         };
-        let mut least = f64::INFINITY;
+        let mut all = Room { gap: f64::INFINITY, before: most, after: most };
         match close {
             Close::Obstacle { body, obstacle } => {
                 let owner = self.owners[obstacle as usize];
                 let root_from_other = scene.world_from_robot().inv_mul(scene.world_from_body(owner));
-                let room = self.near[robot.bodies[body as usize].group].iter().find(|(i, _)| *i == obstacle);
-                let room = room.map_or(0.0, |(_, room)| f64::from(*room));
-                let (root_from_body, parts) = link(body as usize);
+                let body = body as usize;
+                let keeps = self.near[robot.bodies[body].group].iter().find(|(i, _)| *i == obstacle);
+                let keeps = keeps.map_or(0.0, |(_, room)| f64::from(*room));
+                let bend = f64::from(motion.bends[body]);
+                let (root_from_body, parts) = link(body);
                 for part in parts {
+                    let (centre, radius) = part.bounding_sphere();
+                    let mut twist = None;
                     for other in scene.body_parts(owner) {
-                        let near = nearer(part, &root_from_body, other, &root_from_other, room, least);
-                        least = least.min(near);
+                        let Some(gap) = gap(part, &root_from_body, other, &root_from_other, keeps, speed, &all)
+                        else {
+                            continue;
+                        };
+                        let plain = gap.metres / speed;
+                        let (mut before, mut after) = (plain, plain);
+                        if let Some(direction) = gap.direction {
+                            let (velocity, spin) = *twist.get_or_insert_with(|| {
+                                robot.twist(body, &(root_from_body * centre), difference, frames)
+                            });
+                            // No point of the part goes along the direction faster than this, and none is sped up by more than
+                            // twice the bend.
+                            let turning = spin.cross(&direction).norm() * radius;
+                            let along = velocity.dot(&direction);
+                            before = before.max(lasts(gap.metres, turning - along, bend));
+                            after = after.max(lasts(gap.metres, turning + along, bend));
+                        }
+                        all.narrow(Room { gap: gap.metres, before, after });
                     }
                 }
             }
@@ -295,12 +325,15 @@ impl<'a> LaneChecker<'a> {
                 let ((root_from_a, parts_a), (root_from_b, _)) = (link(pair.a), link(pair.b));
                 for part in parts_a {
                     for other in link(pair.b).1 {
-                        least = least.min(nearer(part, &root_from_a, other, &root_from_b, 0.0, least));
+                        if let Some(gap) = gap(part, &root_from_a, other, &root_from_b, 0.0, speed, &all) {
+                            let plain = gap.metres / speed;
+                            all.narrow(Room { gap: gap.metres, before: plain, after: plain });
+                        }
                     }
                 }
             }
         }
-        least
+        all
     }
 
     fn obstruction(&self, close: Close) -> Obstruction {
@@ -320,32 +353,70 @@ impl<'a> LaneChecker<'a> {
     }
 }
 
-/// How much nearer two parts may come to each other that keep `room`, metres, at least; infinite when that is more than `least`
-/// in any case.
-fn nearer(
+/// How near two things are, and how long they stay apart before and after: fractions of the motion.
+#[derive(Debug, Clone, Copy)]
+struct Room {
+    /// Metres.
+    gap: f64,
+    before: f64,
+    after: f64,
+}
+
+impl Room {
+    /// What is left when other parts of the same things have this room.
+    fn narrow(&mut self, other: Room) {
+        self.gap = self.gap.min(other.gap);
+        self.before = self.before.min(other.before);
+        self.after = self.after.min(other.after);
+    }
+}
+
+/// How much nearer two parts may come to each other.
+struct PartGap {
+    metres: f64,
+    /// Along this direction, from the one to the other in the root frame, if it is known.
+    direction: Option<Vector3<f64>>,
+}
+
+/// How much nearer two parts that keep `room` metres may come to each other, at least; `None` when that lasts longer at this speed
+/// than what is known of `others`.
+fn gap(
     a: &ConvexPart,
     root_from_a: &Pose,
     b: &ConvexPart,
     root_from_b: &Pose,
     room: f64,
-    least: f64,
-) -> f64 {
+    speed: f64,
+    others: &Room,
+) -> Option<PartGap> {
     let a_from_b = root_from_a.inv_mul(root_from_b);
     let ((centre_a, radius_a), (centre_b, radius_b)) = (a.bounding_sphere(), b.bounding_sphere());
-    if (a_from_b * centre_b - centre_a).norm() - radius_a - radius_b - room > least {
-        return f64::INFINITY;
+    let apart = (a_from_b * centre_b - centre_a).norm() - radius_a - radius_b - room;
+    if apart > TOUCH && apart > speed * others.before.max(others.after) {
+        return None;
     }
     if let Some(apart) = separation(a, b, &a_from_b, RELATIVE)
         && apart.gap - room > TOUCH
     {
-        return apart.gap - room;
+        let direction = Some(root_from_a.rotation * apart.direction.into_inner());
+        return Some(PartGap { metres: apart.gap - room, direction });
     }
     // Now it matters how far exactly.
     let apart = distance(a, root_from_a, b, root_from_b).distance;
-    if apart > 0.0 || room >= 0.0 {
-        return apart - room;
-    }
-    -contact(a, root_from_a, b, root_from_b, 0.0).map_or(0.0, |found| found.depth) - room
+    let metres = match apart > 0.0 || room >= 0.0 {
+        true => apart - room,
+        false => -contact(a, root_from_a, b, root_from_b, 0.0).map_or(0.0, |found| found.depth) - room,
+    };
+    Some(PartGap { metres, direction: None })
+}
+
+/// How long a gap lasts that closes at this speed and may be closed faster by twice the bend each unit of time: until
+/// speed t + bend t^2 is the gap.
+fn lasts(gap: f64, speed: f64, bend: f64) -> f64 {
+    let root = (speed * speed + 4.0 * bend * gap).sqrt();
+    // The form that does not subtract what is nearly equal.
+    let time = if speed > 0.0 { 2.0 * gap / (speed + root) } else { (root - speed) / (2.0 * bend) };
+    if time.is_nan() { 0.0 } else { time * (1.0 - 1e-9) }
 }
 
 /// For each group of bodies, the obstacles that it can come near to in any configuration, and how far it keeps from them.
@@ -361,7 +432,7 @@ fn near(
         let fixed = body.chain.iter().all(|&(step, _)| !robot.steps[step].slides);
         let middle = robot.steps[first].parent_from_joint.translation.vector;
         let (centre, radius) = obstacle.ball;
-        let away = nalgebra::Vector3::from(centre) - middle;
+        let away = Vector3::from(centre) - middle;
         !fixed || body.chain.len() < 2 || away.norm() <= reach + radius + rules.margin + 1e-3
     };
     let keeps = |group: &Group, owner: BodyIdx| -> Option<f64> {
@@ -459,6 +530,7 @@ impl LaneMemory {
 struct Pass<'a> {
     robot: &'a LaneRobot,
     around: Around<'a>,
+    from: &'a [f64],
     work: &'a mut LaneMemory,
     stretches: &'a mut u64,
 }
@@ -469,7 +541,8 @@ impl WithSimd for Pass<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let LaneMemory { motion, scratch, queue, gaps, .. } = self.work;
+        let LaneMemory { motion, scratch, queue, gaps, difference, .. } = self.work;
+        let line = Line { from: self.from, difference };
         let lanes = S::F32_LANES;
         let first = queue.len();
         let mut next = 0;
@@ -490,8 +563,8 @@ impl WithSimd for Pass<'_> {
             }
             next += count;
             *self.stretches += count as u64;
-            let hit =
-                look(simd, self.robot, &self.around, motion, &middles[..lanes], &halves[..lanes], scratch);
+            let stretches = (&middles[..lanes], &halves[..lanes]);
+            let hit = look(simd, self.robot, &self.around, motion, line, stretches, scratch);
             if let Some((lane, close)) = hit {
                 return Some((middles[lane], close));
             }

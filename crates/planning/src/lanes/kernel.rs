@@ -5,6 +5,7 @@
 
 use pulp::Simd;
 
+use super::apart::Apart;
 use super::frames::{FrameMemory, Frames};
 use super::glance::Standing;
 use super::lane::{Lanes, Mask, Vector, cross, dot, minus, plus, times};
@@ -31,6 +32,13 @@ pub(super) struct Around<'a> {
     /// For each group of bodies, the obstacles that it can come near to, with the room that it keeps from them: negative where it
     /// may be in them, by so much.
     pub(super) near: &'a [Vec<(u32, f32)>],
+}
+
+/// The motion itself: its start, and the difference to its end.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line<'a> {
+    pub(super) from: &'a [f64],
+    pub(super) difference: &'a [f64],
 }
 
 /// Two things that are close: a body, and an obstacle or the body of a pair.
@@ -98,17 +106,21 @@ struct Kernel<'a, S: Simd> {
     /// Lanes that are halved when they stay open.
     halvable: Mask<S>,
     rounding: f32,
+    line: Line<'a>,
+    /// Of the stretches of the lanes.
+    middles: &'a [f32],
+    halves: &'a [f32],
 }
 
-/// Looks at one configuration in each lane; `middles` and `halves` are along the motion, from 0 to 1.
+/// Looks at one configuration in each lane; middles and half lengths of the stretches are along the motion, from 0 to 1.
 #[inline(always)]
 pub(super) fn look<S: Simd>(
     simd: S,
     robot: &LaneRobot,
     around: &Around<'_>,
     motion: &Motion,
-    middles: &[f32],
-    halves: &[f32],
+    line: Line<'_>,
+    (middles, halves): (&[f32], &[f32]),
     scratch: &mut Scratch,
 ) -> Option<Hit> {
     let lanes = S::F32_LANES;
@@ -129,6 +141,9 @@ pub(super) fn look<S: Simd>(
         open: Mask::none(simd),
         halvable: Lanes::splat(simd, motion.halvable).less(half),
         rounding: robot.rounding as f32,
+        line,
+        middles,
+        halves,
     };
     kernel.set_in_motion(motion);
     kernel.measure(motion, half);
@@ -259,6 +274,8 @@ impl<S: Simd> Kernel<'_, S> {
             self.stack.clear();
             self.stack.push((a.spheres.start as u32, b.spheres.start as u32));
             let mut is_close = false;
+            // Lanes in which the table of the pair does not tell that the two stay apart.
+            let mut doubtful = None;
             while let Some((at_a, at_b)) = self.stack.pop() {
                 let (of_a, of_b) = (&robot.spheres[at_a as usize], &robot.spheres[at_b as usize]);
                 let apart = minus(
@@ -268,6 +285,14 @@ impl<S: Simd> Kernel<'_, S> {
                 let squared = dot(&apart, &apart);
                 let outer = reach + self.splat(of_a.outer + of_b.outer);
                 let maybe = squared.less_equal(outer * outer);
+                if !maybe.any() {
+                    continue;
+                }
+                // Only now is the table worth its time.
+                let maybe = match &pair.apart {
+                    Some(table) => maybe.and(*doubtful.get_or_insert_with(|| self.doubtful(table))),
+                    None => maybe,
+                };
                 if !maybe.any() {
                     continue;
                 }
@@ -300,6 +325,18 @@ impl<S: Simd> Kernel<'_, S> {
             }
         }
         None
+    }
+
+    /// Lanes in whose stretches a pair is not known to stay apart.
+    #[inline(always)]
+    fn doubtful(&self, table: &Apart) -> Mask<S> {
+        let mut numbers = [0.0; MOST_LANES];
+        for (number, (middle, half)) in numbers.iter_mut().zip(self.middles.iter().zip(self.halves)) {
+            let (start, end) = (f64::from(middle - half), f64::from(middle + half));
+            *number = if table.holds_within(self.line.from, self.line.difference, start, end) { 0.0 } else { 1.0 };
+        }
+        let numbers = Lanes::new(self.simd, self.simd.partial_load_f32s(&numbers[..self.middles.len()]));
+        self.splat(0.0).less(numbers)
     }
 
     /// Opens the lanes that a node leaves open for good: at a leaf all that it may touch, above one those to be halved in

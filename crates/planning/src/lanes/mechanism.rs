@@ -352,6 +352,30 @@ impl LaneRobot {
         EACH_STEP * (self.steps.len() + 1) as f64 * longest
     }
 
+    /// How a body moves where frames are at `root_from_frames` in the motion by `difference`: velocity of a point of it, and angular
+    /// velocity, in the root frame and per motion.
+    pub(super) fn twist(
+        &self,
+        body: usize,
+        point_in_root: &Point3<f64>,
+        difference: &[f64],
+        root_from_frames: &[Pose],
+    ) -> (Vector3<f64>, Vector3<f64>) {
+        let (mut velocity, mut spin) = (Vector3::zeros(), Vector3::zeros());
+        for &(step, _) in &self.bodies[body].chain {
+            let frame = &root_from_frames[step + 1];
+            let step = &self.steps[step];
+            let axis = frame.rotation * Vector3::z() * (step.factor * difference[step.column]);
+            if step.slides {
+                velocity += axis;
+            } else {
+                velocity += axis.cross(&(point_in_root.coords - frame.translation.vector));
+                spin += axis;
+            }
+        }
+        (velocity, spin)
+    }
+
     /// Poses of all frames in the root frame, exactly; `values` are those of the degrees of freedom.
     pub(super) fn poses(&self, values: &[f64], root_from_frames: &mut Vec<Pose>) {
         root_from_frames.clear();
