@@ -257,7 +257,8 @@ impl<'a> LaneChecker<'a> {
     /// A bound on how fast two things come together, metres per motion.
     fn speed(&self, close: Close) -> f64 {
         let sum = |chain: &[(usize, f64)]| -> f64 {
-            chain.iter().map(|&(step, distance)| self.work.change(self.robot, step) * distance).sum()
+            let change = |step| self.robot.change(step, &self.work.difference);
+            chain.iter().map(|&(step, distance)| change(step) * distance).sum()
         };
         match close {
             Close::Obstacle { body, .. } => sum(&self.robot.bodies[body as usize].chain),
@@ -303,32 +304,31 @@ impl<'a> LaneChecker<'a> {
                         else {
                             continue;
                         };
-                        let plain = gap.metres / speed;
-                        let (mut before, mut after) = (plain, plain);
-                        if let Some(direction) = gap.direction {
-                            let (velocity, spin) = *twist.get_or_insert_with(|| {
-                                robot.twist(body, &(root_from_body * centre), difference, frames)
-                            });
-                            // No point of the part goes along the direction faster than this, and none is sped up by more than
-                            // twice the bend.
-                            let turning = spin.cross(&direction).norm() * radius;
-                            let along = velocity.dot(&direction);
-                            before = before.max(lasts(gap.metres, turning - along, bend));
-                            after = after.max(lasts(gap.metres, turning + along, bend));
-                        }
-                        all.narrow(Room { gap: gap.metres, before, after });
+                        let twist = || *twist.get_or_insert_with(|| {
+                            robot.twist(body, &(root_from_body * centre), difference, frames)
+                        });
+                        all.narrow(gap.room(speed, radius, bend, twist));
                     }
                 }
             }
             Close::Pair(pair) => {
                 let pair = &robot.pairs[pair as usize];
                 let ((root_from_a, parts_a), (root_from_b, _)) = (link(pair.a), link(pair.b));
+                let bend = robot.bend(&pair.between, |step| robot.change(step, difference));
                 for part in parts_a {
                     for other in link(pair.b).1 {
-                        if let Some(gap) = gap(part, &root_from_a, other, &root_from_b, 0.0, speed, &all) {
-                            let plain = gap.metres / speed;
-                            all.narrow(Room { gap: gap.metres, before: plain, after: plain });
-                        }
+                        let Some(gap) = gap(part, &root_from_a, other, &root_from_b, 0.0, speed, &all) else {
+                            continue;
+                        };
+                        let (centre, radius) = other.bounding_sphere();
+                        // As the one sees the other.
+                        let twist = || {
+                            let point = root_from_b * centre;
+                            let (velocity_a, spin_a) = robot.twist(pair.a, &point, difference, frames);
+                            let (velocity_b, spin_b) = robot.twist(pair.b, &point, difference, frames);
+                            (velocity_a - velocity_b, spin_a - spin_b)
+                        };
+                        all.narrow(gap.room(speed, radius, bend, twist));
                     }
                 }
             }
@@ -376,6 +376,28 @@ struct PartGap {
     metres: f64,
     /// Along this direction, from the one to the other in the root frame, if it is known.
     direction: Option<Vector3<f64>>,
+}
+
+impl PartGap {
+    /// How long the gap lasts where nothing closes it faster than `speed`. Along its direction it is closed by points within
+    /// `radius` of one that has the velocity and spin of `twist`; none of them is sped up by more than twice the `bend`.
+    fn room(
+        &self,
+        speed: f64,
+        radius: f64,
+        bend: f64,
+        twist: impl FnOnce() -> (Vector3<f64>, Vector3<f64>),
+    ) -> Room {
+        let plain = self.metres / speed;
+        let mut room = Room { gap: self.metres, before: plain, after: plain };
+        if let Some(direction) = self.direction {
+            let (velocity, spin) = twist();
+            let (turning, along) = (spin.cross(&direction).norm() * radius, velocity.dot(&direction));
+            room.before = room.before.max(lasts(self.metres, turning - along, bend));
+            room.after = room.after.max(lasts(self.metres, turning + along, bend));
+        }
+        room
+    }
 }
 
 /// How much nearer two parts that keep `room` metres may come to each other, at least; `None` when that lasts longer at this speed
@@ -488,19 +510,7 @@ impl LaneMemory {
         // A hair more, for rounding.
         let above = |x: f64| (x * (1.0 + 1e-6)) as f32;
         for body in &robot.bodies {
-            // Second derivative of a point by two joints, the second one farther out: no more than its distance from the
-            // axis of that one; nothing when the first one slides.
-            let (mut bend, mut turned) = (0.0, 0.0);
-            for &(step, distance) in &body.chain {
-                let own = change(step);
-                if robot.steps[step].slides {
-                    bend += own * distance * 2.0 * turned;
-                } else {
-                    bend += own * distance * (own + 2.0 * turned);
-                    turned += own;
-                }
-            }
-            bends.push(above(0.5 * bend));
+            bends.push(above(robot.bend(&body.chain, change)));
         }
         for (i, closing) in pairs.iter_mut() {
             let pair = &robot.pairs[*i as usize];
@@ -517,12 +527,6 @@ impl LaneMemory {
         self.queue.clear();
         let half = 0.5 / stretches as f32;
         self.queue.extend((0..stretches).map(|i| ((2 * i + 1) as f32 * half, half * (1.0 + 1e-6))));
-    }
-
-    /// Change of a joint along the motion, its size.
-    fn change(&self, robot: &LaneRobot, step: usize) -> f64 {
-        let step = &robot.steps[step];
-        (step.factor * self.difference[step.column]).abs()
     }
 }
 

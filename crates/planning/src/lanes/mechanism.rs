@@ -84,6 +84,8 @@ pub(super) struct Pair {
     pub(super) b: usize,
     /// Steps that move one against the other, with how far they bring points of the two together per unit at most.
     pub(super) closing: Vec<(usize, f64)>,
+    /// The same steps in their order from the one to the other, with the largest distance of points of the other from the axis.
+    pub(super) between: Vec<(usize, f64)>,
     /// Where the two are known to stay apart.
     pub(super) apart: Option<Arc<Apart>>,
 }
@@ -300,13 +302,17 @@ impl LaneRobot {
             own.iter().copied().filter(|(step, _)| other.iter().all(|(s, _)| s != step)).collect()
         };
         let (own, other) = (only(chain_a, chain_b), only(chain_b, chain_a));
-        let mut closing = self.branch_seen_from(b, corners[1], &own);
-        closing.extend(self.branch_seen_from(a, corners[0], &other));
-        (!closing.is_empty()).then_some(Pair { a, b, closing, apart: None })
+        let (from_b, from_a) =
+            (self.branch_seen_from(b, corners[1], &own), self.branch_seen_from(a, corners[0], &other));
+        let smaller = |(&(step, one), &(_, other)): (&(usize, f64), &(usize, f64))| (step, one.min(other));
+        let closing: Vec<(usize, f64)> =
+            own.iter().zip(&from_b).chain(other.iter().zip(&from_a)).map(smaller).collect();
+        let between = from_b.into_iter().rev().chain(other).collect();
+        (!closing.is_empty()).then_some(Pair { a, b, closing, between, apart: None })
     }
 
-    /// The steps of a branch that does not move a body, each with its distance in the branch or that of the body from its
-    /// axis, in any configuration, whichever is smaller.
+    /// The steps of a branch that does not move a body, each with the largest distance of points of the body from its axis, in any
+    /// configuration.
     fn branch_seen_from(
         &self,
         body: usize,
@@ -327,7 +333,7 @@ impl LaneRobot {
             at = step.parent;
         }
         let mut bounded = Vec::new();
-        for (i, &(step, distance)) in branch.iter().enumerate() {
+        for (i, &(step, _)) in branch.iter().enumerate() {
             let joint = &self.steps[step];
             let mut beside = reach + joint.parent_from_joint.translation.vector.norm();
             reach = beside + extents[step];
@@ -338,7 +344,7 @@ impl LaneRobot {
                     far.fold((0.0_f64, 0.0_f64), |most, p| (most.0.max(p.0), most.1.max(p.1)));
                 (beside, reach) = (from_axis, from_origin + extents[step]);
             }
-            bounded.push((step, if joint.slides { 1.0 } else { distance.min(beside) }));
+            bounded.push((step, if joint.slides { 1.0 } else { beside }));
         }
         bounded
     }
@@ -350,6 +356,30 @@ impl LaneRobot {
         let reach = |body: &Body| body.chain.iter().map(|(_, distance)| *distance).fold(0.0, f64::max);
         let longest = self.bodies.iter().map(reach).fold(0.0, f64::max);
         EACH_STEP * (self.steps.len() + 1) as f64 * longest
+    }
+
+    /// Change of a joint along the motion by `difference`, its size.
+    pub(super) fn change(&self, step: usize, difference: &[f64]) -> f64 {
+        let step = &self.steps[step];
+        (step.factor * difference[step.column]).abs()
+    }
+
+    /// Half of a bound on the acceleration of points that a chain of steps moves, each step with the largest distance of them from its
+    /// axis; `change` tells how far each step goes. Per motion squared.
+    pub(super) fn bend(&self, chain: &[(usize, f64)], change: impl Fn(usize) -> f64) -> f64 {
+        // Second derivative of a point by two joints, the second one farther out: no more than its distance from the
+        // axis of that one; nothing when the first one slides.
+        let (mut bend, mut turned) = (0.0, 0.0);
+        for &(step, distance) in chain {
+            let own = change(step);
+            if self.steps[step].slides {
+                bend += own * distance * 2.0 * turned;
+            } else {
+                bend += own * distance * (own + 2.0 * turned);
+                turned += own;
+            }
+        }
+        0.5 * bend
     }
 
     /// How a body moves where frames are at `root_from_frames` in the motion by `difference`: velocity of a point of it, and angular
