@@ -1,8 +1,10 @@
 //! Free motions of a task's arm: problems as documents, solved, timed, and judged by whoever wants to.
 
+use robotc_core::geom::{CoverOptions, SphereCover};
 use robotc_core::ids::Idx;
 use robotc_core::{BodyIdx, Configuration, Pose, Trajectory};
 use robotc_planning::edge::{Blocked, walk_edge};
+use robotc_planning::lanes::{LaneChecker, LaneMemory, LaneRobot, Width};
 use robotc_planning::manipulation::gripper_links;
 use robotc_planning::pose_goals::PoseGoals;
 use robotc_planning::problem::{PathFailureReason, PoseDocument, ProblemError, SolveFailure, Solved, solve};
@@ -12,7 +14,7 @@ use robotc_planning::{
 };
 use thiserror::Error;
 
-use crate::session::Session;
+use crate::session::{LinkShapes, Session};
 
 /// A solved problem.
 #[derive(Debug, Clone)]
@@ -96,7 +98,8 @@ impl Session {
         Ok(problem)
     }
 
-    /// Solves a problem with the planner that it names. The result depends on the problem alone unless the budget ends the search.
+    /// Solves a problem with the planner that it names. Motions are proven free in [lanes](robotc_planning::lanes), unless the problem
+    /// has a constraint or asks for jitter: then they are looked at in steps of its resolution. The result depends on the problem alone unless the budget ends the search.
     pub fn solve_motion(
         &self,
         problem: &PlanningProblem,
@@ -116,11 +119,21 @@ impl Session {
             self.checker(&situation, (problem, &space), problem.margin, problem.resolution, constraint);
         let for_goals =
             self.checker(&situation, (problem, &space), problem.margin, problem.resolution, constraint);
+        let lanes = self.lanes(&situation, problem);
+        let mut memory = LaneMemory::default();
+        let rules = self.rules(&situation, problem.margin);
+        let mut in_lanes = lanes.as_ref().map(|lanes| {
+            LaneChecker::with_rules(lanes, &situation.scene, &space, &rules, Width::widest(), &mut memory)
+        });
         let rng = problem.random_seed().split("goals").rng();
         let (arm, rounds) = (self.arm(), self.options().free_samples as usize);
         let mut goals = PoseGoals::new(arm, for_goals, &problem.goals, &poses, &problem.start, rounds, rng);
         let sampler = (!poses.is_empty()).then_some(&mut goals as &mut dyn robotc_planning::GoalSampler);
-        let solved = solve(registry, problem, &mut checker, sampler, constraint, budget);
+        let searcher: &mut dyn EdgeChecker = match &mut in_lanes {
+            Some(in_lanes) => in_lanes,
+            None => &mut checker,
+        };
+        let solved = solve(registry, problem, searcher, sampler, constraint, budget);
         let mut solved = solved.map_err(|failure| self.explain(&situation, &failure))?;
         if !poses.is_empty() {
             solved.goal = goals.numbers()[solved.goal];
@@ -195,13 +208,36 @@ impl Session {
         resolution: f64,
         constraint: Option<&'s dyn Constraint>,
     ) -> RobotChecker<'s> {
-        let robot = &self.task().robot;
-        let gripper = robot.arms[self.task().arm].gripper.map_or_else(Vec::new, |g| gripper_links(robot, g));
-        let rules = Rules { margin, held: situation.held.clone(), gripper, ..Rules::default() };
+        let rules = self.rules(situation, margin);
         let (arm, scene) = (self.arm(), &situation.scene);
         let checker = RobotChecker::new(scene, space, arm.dofs(), &situation.q, rules, resolution)
             .with_constraint(constraint);
         if problem.self_collisions { checker } else { checker.without_self_collisions() }
+    }
+
+    fn rules(&self, situation: &Situation, margin: f64) -> Rules {
+        let robot = &self.task().robot;
+        let gripper = robot.arms[self.task().arm].gripper.map_or_else(Vec::new, |g| gripper_links(robot, g));
+        Rules { margin, held: situation.held.clone(), gripper, ..Rules::default() }
+    }
+
+    /// The robot for checks in lanes; `None` where states are more than free or not: a constraint holds for single states, and a
+    /// start that is moved out of a contact asks how much room there is.
+    fn lanes(&self, situation: &Situation, problem: &PlanningProblem) -> Option<LaneRobot> {
+        if problem.constraint.is_some() || problem.jitter.is_some() {
+            return None;
+        }
+        let LinkShapes { parts, covers, pairs } = self.link_shapes();
+        let pairs = if problem.self_collisions { &pairs[..] } else { &[] };
+        let (q, scene) = (&situation.q, &situation.scene);
+        let gripper = self.rules(situation, 0.0).gripper;
+        let robot = LaneRobot::new(self.kinematics(), self.arm().dofs(), q, parts, covers, pairs);
+        let robot = robot.with_hand(&gripper);
+        let Some(grip) = &situation.held else { return Some(robot) };
+        let parts = scene.parts_of(grip.body);
+        let cover = SphereCover::of(&parts, &CoverOptions::default());
+        let beside = |link| problem.self_collisions && gripper.binary_search(&link).is_err();
+        Some(robot.holding(scene, grip, &cover, beside))
     }
 
     fn constraint(&self, problem: &PlanningProblem) -> Result<Option<Box<dyn Constraint + '_>>, MotionError> {

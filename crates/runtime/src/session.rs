@@ -7,7 +7,7 @@ use robotc_core::{Configuration, Kinematics, LinkIdx, LinkPoses, SerialChain, Ty
 use robotc_ikgen::Solver;
 use robotc_kb::kinds::{
     Cage, CagingSet, ConvexParts, IkSolver, LinkStatistics, Reachability, ReachabilityMap,
-    SelfCollisionPairs, ranked_grasps,
+    SelfCollisionPairs, SphereCover, ranked_grasps,
 };
 use robotc_kb::project::{OfArm, OfGripperAndArticle, OfGripperAndObject, OfRobot, OfShape};
 use robotc_kb::{Knowledge, LoadError};
@@ -56,12 +56,24 @@ pub enum NoPlan {
 /// Plans made before giving up on one that holds.
 const ATTEMPTS: u64 = 4;
 
+/// What the links of the robot are made of, for collision checks in lanes.
+#[derive(Clone)]
+pub(crate) struct LinkShapes {
+    /// Convex parts in the frame of each link.
+    pub(crate) parts: TypedVec<LinkIdx, Arc<robotc_core::geom::ConvexParts>>,
+    /// Balls that cover them.
+    pub(crate) covers: TypedVec<LinkIdx, Arc<robotc_core::geom::SphereCover>>,
+    /// Pairs of links that are compared.
+    pub(crate) pairs: Vec<(LinkIdx, LinkIdx)>,
+}
+
 /// A task with its artefacts. Nothing is computed that could have been compiled.
 pub struct Session {
     task: Arc<Task>,
     kinematics: Kinematics,
     arm: ArmModel,
     scene: Scene,
+    links: LinkShapes,
     grasps: Vec<GraspSet>,
     cages: Vec<Arc<Vec<Cage>>>,
     reachability: Option<Arc<ReachabilityMap>>,
@@ -77,17 +89,22 @@ impl Session {
 
         let mut links: TypedVec<LinkIdx, Arc<_>> =
             robot.model.links().iter().map(|_| Arc::default()).collect();
+        let mut covers: TypedVec<LinkIdx, Arc<_>> =
+            robot.model.links().iter().map(|_| Arc::default()).collect();
         for link in robot.model.links().indices() {
             if !robot.model.links()[link].collisions.is_empty() {
                 links[link] = knowledge.load::<ConvexParts>(&OfShape::Link(link))?;
+                covers[link] = knowledge.load::<SphereCover>(&OfShape::Link(link))?;
             }
         }
         // In the order of the world's bodies.
         let objects = (0..task.objects.len()).map(OfShape::Object);
         let shapes = objects.chain((0..task.obstacles.len()).map(OfShape::Obstacle));
         let bodies = shapes.map(|shape| knowledge.load::<ConvexParts>(&shape)).collect::<Result<_, _>>()?;
-        let pairs = knowledge.load::<SelfCollisionPairs>(&OfRobot)?.tested().collect();
-        let scene = Scene::new(&World::of_task(&task, kinematics.clone()), &links, &bodies, pairs);
+        let pairs: Vec<(LinkIdx, LinkIdx)> =
+            knowledge.load::<SelfCollisionPairs>(&OfRobot)?.tested().collect();
+        let scene = Scene::new(&World::of_task(&task, kinematics.clone()), &links, &bodies, pairs.clone());
+        let links = LinkShapes { parts: links, covers, pairs };
 
         let arm = load_arm(knowledge, &task, &kinematics)?;
         let reachability = match knowledge.load::<Reachability>(&OfArm(task.arm)) {
@@ -114,7 +131,7 @@ impl Session {
                 None => Arc::default(),
             });
         }
-        Ok(Self { task, kinematics, arm, scene, grasps, cages, reachability })
+        Ok(Self { task, kinematics, arm, scene, links, grasps, cages, reachability })
     }
 
     /// What shall happen.
@@ -135,6 +152,11 @@ impl Session {
     /// Robot and bodies at the start: objects of the task in order, then obstacles.
     pub fn scene(&self) -> &Scene {
         &self.scene
+    }
+
+    /// Shapes of the links, as the lane checker wants them.
+    pub(crate) fn link_shapes(&self) -> &LinkShapes {
+        &self.links
     }
 
     /// The grasp set of each object of the task, best first. The planner tries them in an order of its own, which also

@@ -117,7 +117,9 @@ impl BenchRobot {
         let scene = Scene::new(&world, &self.links, &bodies, self.self_pairs.clone());
         let lanes = lanes.unwrap_or_else(|| {
             let (q, kinematics) = (world.q(), &self.kinematics);
-            LaneRobot::new(kinematics, &self.dofs, q, &self.links, &self.covers, &self.self_pairs).into()
+            let lanes =
+                LaneRobot::new(kinematics, &self.dofs, q, &self.links, &self.covers, &self.self_pairs);
+            lanes.with_tables(kinematics, &self.dofs, &self.links).into()
         });
         Ok(Stage { world, scene, lanes })
     }

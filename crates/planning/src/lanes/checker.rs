@@ -2,7 +2,6 @@
 
 use nalgebra::Vector3;
 use pulp::{Simd, WithSimd};
-use robotc_core::geom::{ConvexPart, contact, distance, separation};
 use robotc_core::ids::Idx;
 use robotc_core::{BodyIdx, Pose};
 
@@ -22,21 +21,21 @@ use crate::space::Space;
 /// halved. Where that does not help, since a gap is too narrow for spheres, the convex parts themselves decide, by
 /// conservative advancement. A free edge is thus free as a whole, at every state between its ends.
 pub struct LaneChecker<'a> {
-    robot: &'a LaneRobot,
-    scene: &'a Scene,
+    pub(super) robot: &'a LaneRobot,
+    pub(super) scene: &'a Scene,
     space: &'a Space,
     width: Width,
     obstacles: Vec<Obstacle>,
     /// The body of the scene that each obstacle belongs to.
-    owners: Vec<BodyIdx>,
+    pub(super) owners: Vec<BodyIdx>,
     /// For each group of bodies, the obstacles that it can come near to, and how far it keeps from them: metres, negative where it
     /// may be in them.
-    near: Vec<Vec<(u32, f32)>>,
+    pub(super) near: Vec<Vec<(u32, f32)>>,
     /// The same one by one: what was hit last comes first, since what is hit once is often hit again.
     meetings: Vec<Meeting>,
     patience: Patience,
-    work: &'a mut LaneMemory,
-    statistics: LaneStatistics,
+    pub(super) work: &'a mut LaneMemory,
+    pub(super) statistics: LaneStatistics,
 }
 
 /// What a checker did.
@@ -57,19 +56,22 @@ pub struct LaneStatistics {
 /// Memory of a checker. It grows with use; kept from one checker to the next, nothing is allocated any more.
 #[derive(Debug, Default)]
 pub struct LaneMemory {
-    motion: Motion,
+    pub(super) motion: Motion,
     scratch: Scratch,
     /// Stretches of the edge still to be looked at: middle and half length.
     queue: Vec<(f32, f32)>,
     /// Stretches that the spheres do not settle, with what is close there.
     gaps: Vec<(f32, f32, Close)>,
-    difference: Vec<f64>,
-    values: Vec<f64>,
+    pub(super) difference: Vec<f64>,
+    pub(super) values: Vec<f64>,
     /// Where the frames are at `values`.
-    frames: Vec<Pose>,
-    pieces: Vec<(f64, f64)>,
+    pub(super) frames: Vec<Pose>,
+    pub(super) pieces: Vec<(f64, f64)>,
+    /// For each two parts of the things that are being settled, the direction of the gap between them that was found last, as the
+    /// first one sees it.
+    pub(super) directions: Vec<Option<Vector3<f64>>>,
     /// Stretches of the edge in which two things were proven apart: first, last, which.
-    proven: Vec<(f64, f64, Close)>,
+    pub(super) proven: Vec<(f64, f64, Close)>,
 }
 
 /// Stretches of an edge are a multiple of this, so that their places do not depend on the number of lanes.
@@ -82,13 +84,7 @@ const LONGEST: f64 = 1.0 / 16.0;
 const LOOK: f64 = 1.0 / 20.0;
 
 /// Stretches in which nothing moves farther than this, in metres, are left to the convex parts.
-const FINE: f64 = 8e-3;
-
-/// Distances are found to within this fraction: they only tell how long two things stay apart.
-const RELATIVE: f64 = 0.1;
-
-/// Bodies this close to each other count as touching, metres: conservative advancement would not get past them.
-const TOUCH: f64 = 2e-5;
+const FINE: f64 = 5e-2;
 
 /// Stretches of one edge after which it counts as blocked.
 const MOST_STRETCHES: usize = 8192;
@@ -211,132 +207,7 @@ impl<'a> LaneChecker<'a> {
         }
     }
 
-    /// Decides by the convex parts whether two things that are close stay apart within a stretch.
-    fn settle(&mut self, from: &[f64], middle: f64, half: f64, close: Close) -> Result<(), Blocked> {
-        let mut pieces = std::mem::take(&mut self.work.pieces);
-        pieces.clear();
-        pieces.push((middle - half, middle + half));
-        let speed = self.speed(close);
-        let mut outcome = Ok(());
-        while let Some((start, end)) = pieces.pop() {
-            let inside =
-                |&(first, last, of): &(f64, f64, Close)| of == close && first <= start && end <= last;
-            if self.work.proven.iter().any(inside) || self.is_known_apart(from, start, end, close) {
-                continue;
-            }
-            let middle = 0.5 * (start + end);
-            self.statistics.distances += 1;
-            let room = self.room(from, middle, 2.0 * (end - start), speed, close);
-            if room.gap <= TOUCH {
-                outcome = Err(Blocked { fraction: middle, by: self.obstruction(close) });
-                break;
-            }
-            let (first, last) = (middle - room.before, middle + room.after);
-            if first < start && end < last {
-                self.work.proven.push((first, last, close));
-                continue;
-            }
-            if start <= first {
-                pieces.push((start, first));
-            }
-            if last <= end {
-                pieces.push((last, end));
-            }
-        }
-        self.work.pieces = pieces;
-        outcome
-    }
-
-    /// Whether the table of a pair says that the two stay apart within a stretch.
-    fn is_known_apart(&self, from: &[f64], start: f64, end: f64, close: Close) -> bool {
-        let Close::Pair(pair) = close else { return false };
-        let table = self.robot.pairs[pair as usize].apart.as_ref();
-        table.is_some_and(|table| table.holds_within(from, &self.work.difference, start, end))
-    }
-
-    /// A bound on how fast two things come together, metres per motion.
-    fn speed(&self, close: Close) -> f64 {
-        let sum = |chain: &[(usize, f64)]| -> f64 {
-            let change = |step| self.robot.change(step, &self.work.difference);
-            chain.iter().map(|&(step, distance)| change(step) * distance).sum()
-        };
-        match close {
-            Close::Obstacle { body, .. } => sum(&self.robot.bodies[body as usize].chain),
-            Close::Pair(pair) => sum(&self.robot.pairs[pair as usize].closing),
-        }
-    }
-
-    /// How long two things that are where they are at a fraction of the motion stay apart, at least: no longer than `most` is looked
-    /// for. `speed` is that at which they come together at most.
-    fn room(&mut self, from: &[f64], fraction: f64, most: f64, speed: f64, close: Close) -> Room {
-        let robot = self.robot;
-        let LaneMemory { values, difference, frames, motion, .. } = &mut *self.work;
-        // Often the next question is about the same state.
-        let state = || from.iter().zip(difference.iter()).map(|(a, d)| a + fraction * d);
-        if frames.is_empty() || !state().eq(values.iter().copied()) {
-            values.clear();
-            values.extend(state());
-            robot.poses(values, frames);
-        }
-        let scene = self.scene;
-        let link = |body: usize| {
-            let body = &robot.bodies[body];
-            let of_link = body.link.map(|link| scene.link_parts(link));
-            let of_held = robot.held.filter(|_| body.link.is_none()).map(|held| scene.body_parts(held));
-            let parts = of_link.into_iter().flatten().chain(of_held.into_iter().flatten());
-            (frames[body.frame] * body.frame_from_body, parts)
-        };
-        let mut all = Room { gap: f64::INFINITY, before: most, after: most };
-        match close {
-            Close::Obstacle { body, obstacle } => {
-                let owner = self.owners[obstacle as usize];
-                let root_from_other = scene.world_from_robot().inv_mul(scene.world_from_body(owner));
-                let body = body as usize;
-                let keeps = self.near[robot.bodies[body].group].iter().find(|(i, _)| *i == obstacle);
-                let keeps = keeps.map_or(0.0, |(_, room)| f64::from(*room));
-                let bend = f64::from(motion.bends[body]);
-                let (root_from_body, parts) = link(body);
-                for part in parts {
-                    let (centre, radius) = part.bounding_sphere();
-                    let mut twist = None;
-                    for other in scene.body_parts(owner) {
-                        let Some(gap) = gap(part, &root_from_body, other, &root_from_other, keeps, speed, &all)
-                        else {
-                            continue;
-                        };
-                        let twist = || *twist.get_or_insert_with(|| {
-                            robot.twist(body, &(root_from_body * centre), difference, frames)
-                        });
-                        all.narrow(gap.room(speed, radius, bend, twist));
-                    }
-                }
-            }
-            Close::Pair(pair) => {
-                let pair = &robot.pairs[pair as usize];
-                let ((root_from_a, parts_a), (root_from_b, _)) = (link(pair.a), link(pair.b));
-                let bend = robot.bend(&pair.between, |step| robot.change(step, difference));
-                for part in parts_a {
-                    for other in link(pair.b).1 {
-                        let Some(gap) = gap(part, &root_from_a, other, &root_from_b, 0.0, speed, &all) else {
-                            continue;
-                        };
-                        let (centre, radius) = other.bounding_sphere();
-                        // As the one sees the other.
-                        let twist = || {
-                            let point = root_from_b * centre;
-                            let (velocity_a, spin_a) = robot.twist(pair.a, &point, difference, frames);
-                            let (velocity_b, spin_b) = robot.twist(pair.b, &point, difference, frames);
-                            (velocity_a - velocity_b, spin_a - spin_b)
-                        };
-                        all.narrow(gap.room(speed, radius, bend, twist));
-                    }
-                }
-            }
-        }
-        all
-    }
-
-    fn obstruction(&self, close: Close) -> Obstruction {
+    pub(super) fn obstruction(&self, close: Close) -> Obstruction {
         let of_body = |body: BodyIdx| self.scene.links() + body.index();
         let held = self.robot.held.map_or(0, of_body);
         let body = |body: usize| self.robot.bodies[body].link.map_or(held, number_of);
@@ -351,94 +222,6 @@ impl<'a> LaneChecker<'a> {
         };
         Obstruction::Contact((a as u32) << 16 | b as u32)
     }
-}
-
-/// How near two things are, and how long they stay apart before and after: fractions of the motion.
-#[derive(Debug, Clone, Copy)]
-struct Room {
-    /// Metres.
-    gap: f64,
-    before: f64,
-    after: f64,
-}
-
-impl Room {
-    /// What is left when other parts of the same things have this room.
-    fn narrow(&mut self, other: Room) {
-        self.gap = self.gap.min(other.gap);
-        self.before = self.before.min(other.before);
-        self.after = self.after.min(other.after);
-    }
-}
-
-/// How much nearer two parts may come to each other.
-struct PartGap {
-    metres: f64,
-    /// Along this direction, from the one to the other in the root frame, if it is known.
-    direction: Option<Vector3<f64>>,
-}
-
-impl PartGap {
-    /// How long the gap lasts where nothing closes it faster than `speed`. Along its direction it is closed by points within
-    /// `radius` of one that has the velocity and spin of `twist`; none of them is sped up by more than twice the `bend`.
-    fn room(
-        &self,
-        speed: f64,
-        radius: f64,
-        bend: f64,
-        twist: impl FnOnce() -> (Vector3<f64>, Vector3<f64>),
-    ) -> Room {
-        let plain = self.metres / speed;
-        let mut room = Room { gap: self.metres, before: plain, after: plain };
-        if let Some(direction) = self.direction {
-            let (velocity, spin) = twist();
-            let (turning, along) = (spin.cross(&direction).norm() * radius, velocity.dot(&direction));
-            room.before = room.before.max(lasts(self.metres, turning - along, bend));
-            room.after = room.after.max(lasts(self.metres, turning + along, bend));
-        }
-        room
-    }
-}
-
-/// How much nearer two parts that keep `room` metres may come to each other, at least; `None` when that lasts longer at this speed
-/// than what is known of `others`.
-fn gap(
-    a: &ConvexPart,
-    root_from_a: &Pose,
-    b: &ConvexPart,
-    root_from_b: &Pose,
-    room: f64,
-    speed: f64,
-    others: &Room,
-) -> Option<PartGap> {
-    let a_from_b = root_from_a.inv_mul(root_from_b);
-    let ((centre_a, radius_a), (centre_b, radius_b)) = (a.bounding_sphere(), b.bounding_sphere());
-    let apart = (a_from_b * centre_b - centre_a).norm() - radius_a - radius_b - room;
-    if apart > TOUCH && apart > speed * others.before.max(others.after) {
-        return None;
-    }
-    if let Some(apart) = separation(a, b, &a_from_b, RELATIVE)
-        && apart.gap - room > TOUCH
-    {
-        let direction = Some(root_from_a.rotation * apart.direction.into_inner());
-        return Some(PartGap { metres: apart.gap - room, direction });
-    }
-    // Now it matters how far exactly.
-    let apart = distance(a, root_from_a, b, root_from_b).distance;
-    let metres = match apart > 0.0 || room >= 0.0 {
-        true => apart - room,
-        false => -contact(a, root_from_a, b, root_from_b, 0.0).map_or(0.0, |found| found.depth) - room,
-    };
-    Some(PartGap { metres, direction: None })
-}
-
-/// How long a gap lasts that closes at this speed and may be closed faster by twice the bend each unit of time: until
-/// speed t + bend t^2 is the gap.
-fn lasts(gap: f64, speed: f64, bend: f64) -> f64 {
-    let root = (speed * speed + 4.0 * bend * gap).sqrt();
-    // The form that does not subtract what is nearly equal.
-    let time = if speed > 0.0 { 2.0 * gap / (speed + root) } else { (root - speed) / (2.0 * bend) };
-    if time.is_nan() { 0.0 } else { time * (1.0 - 1e-9) }
 }
 
 /// For each group of bodies, the obstacles that it can come near to in any configuration, and how far it keeps from them.

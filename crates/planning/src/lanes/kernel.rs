@@ -333,7 +333,8 @@ impl<S: Simd> Kernel<'_, S> {
         let mut numbers = [0.0; MOST_LANES];
         for (number, (middle, half)) in numbers.iter_mut().zip(self.middles.iter().zip(self.halves)) {
             let (start, end) = (f64::from(middle - half), f64::from(middle + half));
-            *number = if table.holds_within(self.line.from, self.line.difference, start, end) { 0.0 } else { 1.0 };
+            *number =
+                if table.holds_within(self.line.from, self.line.difference, start, end) { 0.0 } else { 1.0 };
         }
         let numbers = Lanes::new(self.simd, self.simd.partial_load_f32s(&numbers[..self.middles.len()]));
         self.splat(0.0).less(numbers)

@@ -104,7 +104,7 @@ impl LaneRobot {
     /// Motions of `dofs` from configuration `q` on.
     ///
     /// `parts` and `covers` belong to the links; `self_pairs` are the pairs of links to compare, of which those that
-    /// `dofs` do not move against each other are left out.
+    /// `dofs` do not move against each other are left out. See [`with_tables`](Self::with_tables) for robots of many motions.
     pub fn new(
         kinematics: &Kinematics,
         dofs: &[DofIdx],
@@ -164,11 +164,6 @@ impl LaneRobot {
                 let corners = [corners(parts[link_a].iter()), corners(parts[link_b].iter())];
                 robot.pairs.extend(robot.pair(a, b, [&corners[0], &corners[1]]));
             }
-        }
-        let limits = kinematics.model().dofs();
-        let ranges: Vec<(f64, f64)> = dofs.iter().map(|&dof| limits[dof].sampling_range()).collect();
-        for i in 0..robot.pairs.len() {
-            robot.pairs[i].apart = Apart::of(&robot, &robot.pairs[i], parts, &ranges).map(Arc::new);
         }
         robot.group();
         robot.rounding = robot.rounding();

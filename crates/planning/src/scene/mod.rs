@@ -155,6 +155,11 @@ impl Scene {
         self.bodies[body].shape.parts.iter().map(|part| &part.part)
     }
 
+    /// The convex parts of a body, in its frame.
+    pub fn parts_of(&self, body: BodyIdx) -> ConvexParts {
+        ConvexParts::new(self.body_parts(body).cloned().collect())
+    }
+
     /// Bodies that have a shape: where they are, what they look like, and the convex parts that cover them.
     pub(crate) fn solids(
         &self,
