@@ -1,8 +1,10 @@
 //! Free motions of a task's arm: problems as documents, solved, timed, and judged by whoever wants to.
 
+use std::sync::Arc;
+
 use robotc_core::geom::{CoverOptions, SphereCover};
 use robotc_core::ids::Idx;
-use robotc_core::{BodyIdx, Configuration, Pose, Trajectory};
+use robotc_core::{BodyIdx, Configuration, LinkIdx, Pose, Trajectory};
 use robotc_planning::edge::{Blocked, walk_edge};
 use robotc_planning::lanes::{LaneChecker, LaneMemory, LaneRobot, Width};
 use robotc_planning::manipulation::gripper_links;
@@ -65,6 +67,9 @@ pub struct FirstContact {
     /// The same in words, or what else is wrong: a limit, the constraint.
     pub message: String,
 }
+
+/// Balls around what is held are made for each problem, so that there are few of them.
+const OF_HELD: CoverOptions = CoverOptions { overshoot: 0.5, least: 0.01 };
 
 /// The robot and the things around it as a problem says.
 struct Situation {
@@ -223,21 +228,27 @@ impl Session {
 
     /// The robot for checks in lanes; `None` where states are more than free or not: a constraint holds for single states, and a
     /// start that is moved out of a contact asks how much room there is.
-    fn lanes(&self, situation: &Situation, problem: &PlanningProblem) -> Option<LaneRobot> {
+    fn lanes(&self, situation: &Situation, problem: &PlanningProblem) -> Option<Arc<LaneRobot>> {
         if problem.constraint.is_some() || problem.jitter.is_some() {
             return None;
         }
-        let LinkShapes { parts, covers, pairs } = self.link_shapes();
-        let pairs = if problem.self_collisions { &pairs[..] } else { &[] };
+        let LinkShapes { parts, covers, pairs, at_start } = self.link_shapes();
         let (q, scene) = (&situation.q, &situation.scene);
         let gripper = self.rules(situation, 0.0).gripper;
-        let robot = LaneRobot::new(self.kinematics(), self.arm().dofs(), q, parts, covers, pairs);
-        let robot = robot.with_hand(&gripper);
+        let make = |pairs: &[(LinkIdx, LinkIdx)]| {
+            let robot = LaneRobot::new(self.kinematics(), self.arm().dofs(), q, parts, covers, pairs);
+            Arc::new(robot.with_hand(&gripper))
+        };
+        let robot = match problem.self_collisions {
+            true if problem.situation.joints.is_empty() => at_start.get_or_init(|| make(pairs)).clone(),
+            true => make(pairs),
+            false => make(&[]),
+        };
         let Some(grip) = &situation.held else { return Some(robot) };
         let parts = scene.parts_of(grip.body);
-        let cover = SphereCover::of(&parts, &CoverOptions::default());
+        let cover = SphereCover::of(&parts, &OF_HELD);
         let beside = |link| problem.self_collisions && gripper.binary_search(&link).is_err();
-        Some(robot.holding(scene, grip, &cover, beside))
+        Some(Arc::new(robot.holding(scene, grip, &cover, beside)))
     }
 
     fn constraint(&self, problem: &PlanningProblem) -> Result<Option<Box<dyn Constraint + '_>>, MotionError> {

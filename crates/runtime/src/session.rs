@@ -1,6 +1,6 @@
 //! A task with everything that was compiled for it, ready to be planned and run.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use robotc_core::task::Task;
 use robotc_core::{Configuration, Kinematics, LinkIdx, LinkPoses, SerialChain, TypedVec, World};
@@ -17,7 +17,7 @@ use robotc_planning::manipulation::{
     gripper_links, pick_and_place,
 };
 use robotc_planning::scene::Scene;
-use robotc_planning::{ArmError, ArmModel, Budget};
+use robotc_planning::{ArmError, ArmModel, Budget, LaneRobot};
 use thiserror::Error;
 
 /// Why a task cannot be worked on.
@@ -57,7 +57,6 @@ pub enum NoPlan {
 const ATTEMPTS: u64 = 4;
 
 /// What the links of the robot are made of, for collision checks in lanes.
-#[derive(Clone)]
 pub(crate) struct LinkShapes {
     /// Convex parts in the frame of each link.
     pub(crate) parts: TypedVec<LinkIdx, Arc<robotc_core::geom::ConvexParts>>,
@@ -65,6 +64,8 @@ pub(crate) struct LinkShapes {
     pub(crate) covers: TypedVec<LinkIdx, Arc<robotc_core::geom::SphereCover>>,
     /// Pairs of links that are compared.
     pub(crate) pairs: Vec<(LinkIdx, LinkIdx)>,
+    /// The robot as the task starts, for the joints of the arm; made when it is asked for first.
+    pub(crate) at_start: OnceLock<Arc<LaneRobot>>,
 }
 
 /// A task with its artefacts. Nothing is computed that could have been compiled.
@@ -104,7 +105,7 @@ impl Session {
         let pairs: Vec<(LinkIdx, LinkIdx)> =
             knowledge.load::<SelfCollisionPairs>(&OfRobot)?.tested().collect();
         let scene = Scene::new(&World::of_task(&task, kinematics.clone()), &links, &bodies, pairs.clone());
-        let links = LinkShapes { parts: links, covers, pairs };
+        let links = LinkShapes { parts: links, covers, pairs, at_start: OnceLock::new() };
 
         let arm = load_arm(knowledge, &task, &kinematics)?;
         let reachability = match knowledge.load::<Reachability>(&OfArm(task.arm)) {

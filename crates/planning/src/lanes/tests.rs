@@ -91,7 +91,7 @@ fn bench(rail: bool, covers: &Covers, rng: &mut Rng) -> Bench {
     let dofs = robot.arms[0].dofs.clone();
     let lanes = LaneRobot::new(&kinematics, &dofs, world.q(), &parts, covers, &pairs);
     // Some with tables of neighbours, some without.
-    let lanes = if rng.below(2) == 0 { lanes.with_tables(&kinematics, &dofs, &parts) } else { lanes };
+    let lanes = if rail { lanes } else { lanes.with_tables(&kinematics, &dofs, &parts) };
     let scene = Scene::new(&world, &parts, &bodies, pairs);
     let axis = |&dof| Axis::bounded(model.dofs()[dof].lower, model.dofs()[dof].upper);
     let space = Space::new(dofs.iter().map(axis).collect());

@@ -34,7 +34,7 @@ pub struct SearchOptions {
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { step: 0.1, local: 0.1, restart: 8000, domain: 4.0, hopes: 100, max_iterations: 1_000_000 }
+        Self { step: 0.1, local: 0.1, restart: 40_000, domain: 4.0, hopes: 100, max_iterations: 1_000_000 }
     }
 }
 
