@@ -209,14 +209,14 @@ fn constants(program: &Program, chain: &TrueChain, out: &mut String) {
     for link in &chain.links {
         let _ = writeln!(
             out,
-            "        Link {{\n            previous_from_joint: {},\n            slides: {},\n            variable: {},\n            ratio: {:?},\n        }},",
-            frame(&link.previous_from_joint, "            "),
+            "        Link {{\n            previous_from_joint: {},\n            slides: {}, variable: {}, ratio: {:?},\n        }},",
+            frame(&link.previous_from_joint),
             link.slides,
             link.variable,
             link.ratio
         );
     }
-    let _ = writeln!(out, "    ],\n    last_from_tip: {},\n}};\n", frame(&chain.last_from_tip, "    "));
+    let _ = writeln!(out, "    ],\n    last_from_tip: {},\n}};\n", frame(&chain.last_from_tip));
     let _ = writeln!(
         out,
         "/// Constants of a chain: every joint axis is the z axis of its frame.\npub struct Chain {{\n    /// Moving joints, base to tip.\n    \
@@ -225,13 +225,8 @@ fn constants(program: &Program, chain: &TrueChain, out: &mut String) {
     );
 }
 
-fn frame(f: &Frame, pad: &str) -> String {
-    let rows: Vec<String> = f.rotation.iter().map(|row| format!("{pad}        {row:?},\n")).collect();
-    format!(
-        "Frame {{\n{pad}    rotation: [\n{}{pad}    ],\n{pad}    position: {:?},\n{pad}}}",
-        rows.concat(),
-        f.position
-    )
+fn frame(f: &Frame) -> String {
+    format!("Frame {{ rotation: {:?}, position: {:?} }}", f.rotation, f.position)
 }
 
 /// Continua of solutions, known of whole poses.

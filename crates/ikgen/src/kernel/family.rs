@@ -1,12 +1,11 @@
-//! Continua of solutions at singular poses: directions in which joints move and the tip does not, followed on the true chain.
+//! Continua of solutions at singular poses: directions in which joints move and the tip does not.
 //!
-//! Where axes have lined up the Jacobian has lost rank; so it has where an arm is stretched, and nothing can move. What tells the two apart
-//! is to go there: a family is what stays on the pose to the tolerance of solutions.
+//! A stretched arm has lost rank too, and cannot move: a family is what stays on the pose when it is followed.
 
 use super::candidate::Arm;
 use super::chain::{Frame, MAX_JOINTS, TOLERANCE, linearise, polish};
 
-/// What is left of the Jacobian below this may be that of a continuum.
+/// Below this the Jacobian has lost rank.
 const SINGULAR: f64 = 1e-6;
 
 /// How far the leading joint goes at a time along a curve.
@@ -18,12 +17,12 @@ const SMALLEST: f64 = 1e-3;
 /// Infinitely many solutions through one.
 #[derive(Clone, Copy, Debug)]
 pub struct Family {
-    /// Which joints move together: 0 for those that stay, 1 for the leading one, radians or metres.
+    /// Which joints move together: 1 for the leading one, 0 for those that stay.
     pub direction: [f64; MAX_JOINTS],
     /// The leading joint.
     pub leader: usize,
-    /// Whether `solution + t direction` reaches the pose for every `t`; otherwise the family is a curve that starts in that direction, and
-    /// `t` is how far the leading joint has moved.
+    /// Whether `solution + t direction` reaches the pose for every `t`; otherwise a curve starts in that direction, and `t` is what the
+    /// leading joint has moved.
     pub line: bool,
     /// Smallest and largest `t`, zero inside; from -pi to pi when the family closes.
     pub interval: [f64; 2],
@@ -46,11 +45,11 @@ impl Families {
 /// The families through a solution.
 pub fn families_of(arm: &Arm<'_>, base_from_tip: &Frame, solution: &[f64]) -> Families {
     use core::f64::consts::PI;
-    let none = Family { direction: [0.0; MAX_JOINTS], leader: 0, line: false, interval: [0.0; 2] };
+    let none = Family { direction: [0.0; MAX_JOINTS], leader: 0, line: true, interval: [-PI, PI] };
     let mut found = Families { items: [none; MAX_JOINTS], len: 0 };
     let (still, count) = still_directions(arm, base_from_tip, solution);
     for (direction, leader) in &still[..count] {
-        let mut family = Family { direction: *direction, leader: *leader, line: true, interval: [-PI, PI] };
+        let mut family = Family { direction: *direction, leader: *leader, ..none };
         for i in 0..solution.len() {
             family.line = family.line && (direction[i] == 0.0 || !arm.slides[i]);
         }
@@ -104,7 +103,7 @@ fn along(values: &[f64], direction: &[f64; MAX_JOINTS], t: f64) -> [f64; MAX_JOI
     at
 }
 
-/// Follows a curve until the leading joint has moved by `t`; returns how far it came. Steps are no smaller than `least`.
+/// Follows a curve until the leading joint has moved by `t`; returns how far it came in steps of `least` or more.
 fn follow(
     arm: &Arm<'_>,
     base_from_tip: &Frame,
@@ -121,7 +120,7 @@ fn follow(
     let sign = if t < 0.0 { -1.0 } else { 1.0 };
     while gone < t.abs() && step >= least {
         let rest = t.abs() - gone;
-        let by = sign * if step < rest { step } else { rest };
+        let by = sign * step.min(rest);
         let wanted = along(values, &last, by);
         let mut next = wanted;
         let left = polish(arm.links, arm.last_from_tip, base_from_tip, &mut next[..n], &held[..n]);
@@ -142,8 +141,8 @@ fn follow(
     sign * gone
 }
 
-/// A basis of the directions in which the joints move and the tip does not, to first order, and how many there are: each with its leading
-/// joint, whose entry is 1 and 0 in the others. Joints that the caller gave stay.
+/// A basis of the directions in which joints move and the tip does not, each with its leading joint (1 there, 0 in the others), and
+/// their number.
 fn still_directions(
     arm: &Arm<'_>,
     base_from_tip: &Frame,
@@ -187,7 +186,7 @@ fn still_directions(
     }
     let mut found = [([0.0; MAX_JOINTS], 0); MAX_JOINTS];
     let count = n - rank;
-    for k in 0..count {
+    for (k, (direction, _)) in found[..count].iter_mut().enumerate() {
         let mut x = [0.0; MAX_JOINTS];
         x[rank + k] = 1.0;
         for r in (0..rank).rev() {
@@ -198,7 +197,7 @@ fn still_directions(
             x[r] = -sum / columns[r][r];
         }
         for c in 0..n {
-            found[k].0[joints[c]] = x[c];
+            direction[joints[c]] = x[c];
         }
     }
     for k in 0..count {
@@ -218,13 +217,11 @@ fn still_directions(
         }
         found[k] = (row, leader);
     }
-    // Rounding of the elimination; what is meant is checked on the chain.
     for (direction, _) in &mut found[..count] {
         for x in direction {
-            for whole in [-1.0, 0.0, 1.0] {
-                if (*x - whole).abs() < 1e-7 {
-                    *x = whole;
-                }
+            let whole = if x.abs() < 0.5 { 0.0 } else { x.signum() };
+            if (*x - whole).abs() < 1e-7 {
+                *x = whole;
             }
         }
     }
