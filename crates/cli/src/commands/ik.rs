@@ -200,7 +200,7 @@ fn show_intervals(compiled: &Compiled, base_from_tip: &Pose, free: &[f64], joint
 fn compile_within(chain: &SerialChain, options: &Options, seconds: f64) -> Result<Compiled, Refusal> {
     enum News {
         Tried(String),
-        Done(Result<Compiled, Refusal>),
+        Done(Box<Result<Compiled, Refusal>>),
     }
     let (send, receive) = std::sync::mpsc::channel();
     let work = (chain.clone(), options.clone());
@@ -208,7 +208,7 @@ fn compile_within(chain: &SerialChain, options: &Options, seconds: f64) -> Resul
         // Whoever asked may not wait any more.
         let watch = |line: &str| drop(send.send(News::Tried(line.into())));
         let result = compile_watched(&work.0, &work.1, &watch);
-        drop(send.send(News::Done(result)));
+        drop(send.send(News::Done(Box::new(result))));
     });
     let start = Instant::now();
     let budget = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
@@ -216,7 +216,7 @@ fn compile_within(chain: &SerialChain, options: &Options, seconds: f64) -> Resul
     loop {
         match receive.recv_timeout(budget.saturating_sub(start.elapsed())) {
             Ok(News::Tried(line)) => trace.push(line),
-            Ok(News::Done(result)) => return result,
+            Ok(News::Done(result)) => return *result,
             Err(_) => break,
         }
     }
