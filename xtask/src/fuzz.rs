@@ -23,6 +23,7 @@ type Target = (&'static str, &'static [&'static str]);
 const TARGETS: &[Target] = &[
     // Its seeds are compiled; see `crates/fuzz/examples/artefacts.rs`.
     ("artefact", &[]),
+    ("grasps", &["acronym.json", "isaac_grasp.yaml", "npz"]),
     ("joint_limits", &["yaml"]),
     ("mesh", &["dae", "obj", "stl"]),
     ("program", &["ik"]),

@@ -6,6 +6,7 @@
 
 mod artefact;
 mod description;
+mod grasps;
 mod program;
 mod spec;
 mod surroundings;
@@ -24,6 +25,7 @@ pub struct Target {
 /// All of them, by name.
 pub const TARGETS: &[Target] = &[
     Target { name: "artefact", run: artefact::artefact },
+    Target { name: "grasps", run: grasps::grasps },
     Target { name: "joint_limits", run: description::joint_limits },
     Target { name: "mesh", run: description::mesh },
     Target { name: "program", run: program::program },

@@ -2,8 +2,8 @@
 //!
 //! Both go through the same sampler and the same checks, in this order: is the hand free at the grasp, is the footprint
 //! clear, does exact inverse kinematics with the same values of the free joints find a joint vector without self-collision
-//! with which no link touches an obstacle. The map's side starts cold in each trial: making the distributions of all grasps
-//! counts.
+//! with which no link touches an obstacle. The map's side starts cold in each trial: making the distributions of grasps
+//! counts. Rates are by processor time.
 
 use std::time::Instant;
 
@@ -19,9 +19,12 @@ use robotc_planning::placement::{
     BaseDistribution, BasePlacement, PlacementArm, PlacementOptions, PlacementProblem, Prism, UniformBases,
 };
 
-/// Pairs of trials of each scene, and goals drawn in each.
+/// Trials of each scene in a block; the distributions take turns by blocks.
 const TRIALS: u64 = 25;
-const GOALS: usize = 10;
+const BLOCKS: u64 = 4;
+
+/// Goals drawn in each trial.
+const GOALS: [usize; 2] = [10, 100];
 
 /// Grasps of the object, and how far the tip is from its middle, metres.
 const GRASPS: usize = 40;
@@ -152,16 +155,32 @@ fn grasps(object: [f64; 3]) -> Vec<Pose> {
 #[derive(Default, Clone)]
 struct Outcome {
     first: Vec<f64>,
+    /// Processor time.
     seconds: f64,
     goals: usize,
     places: u32,
 }
 
-/// Draws goals, and adds what that took.
+/// Draws goals in every trial of a block, and adds what that took.
+fn block<D: BaseDistribution>(
+    problem: &mut Problem<'_>,
+    make: impl Fn() -> D,
+    (number, goals): (u64, usize),
+    outcome: &mut Outcome,
+) {
+    let start = super::processor_seconds();
+    for seed in number * TRIALS..(number + 1) * TRIALS {
+        trial(problem, &make, Seed::new(seed), goals, outcome);
+    }
+    outcome.seconds += super::processor_seconds() - start;
+}
+
+/// Draws goals, and adds how many there were.
 fn trial<D: BaseDistribution>(
     problem: &mut Problem<'_>,
-    make: impl FnOnce() -> D,
+    make: impl Fn() -> D,
     seed: Seed,
+    wanted: usize,
     outcome: &mut Outcome,
 ) {
     let arms = [PlacementArm { cost: 1.0, grasps: problem.grasps.to_vec() }];
@@ -170,7 +189,7 @@ fn trial<D: BaseDistribution>(
     let mut sampler =
         BasePlacement::new(problem, &mut distribution, &arms, PlacementOptions::default(), seed);
     let mut goals = 0;
-    while goals < GOALS {
+    while goals < wanted {
         match sampler.draw(&Budget::unlimited()) {
             Ok(GoalDraw::Goal(_)) => {
                 goals += 1;
@@ -182,13 +201,12 @@ fn trial<D: BaseDistribution>(
             Ok(GoalDraw::Exhausted) | Err(_) => break,
         }
     }
-    outcome.seconds += start.elapsed().as_secs_f64();
     outcome.goals += goals;
     outcome.places += sampler.rejections.places;
 }
 
-/// Rows of a Markdown table: for each scene the mean time to the first goal, goals for each second, and the share of
-/// places that are one, uniform and from the map, with the ratios.
+/// Rows of a Markdown table: for each scene and number of goals the median time to the first goal by the clock, goals for each second
+/// of processor time, and the share of places that are one, uniform and from the map, with the ratios.
 pub(crate) fn rows(name: &str, arm: &ArmAlone, map: &ReachabilityMap, reach: f64) -> Vec<String> {
     let (base, mobile_from_base) = base();
     let mut rows = Vec::new();
@@ -211,32 +229,40 @@ pub(crate) fn rows(name: &str, arm: &ArmAlone, map: &ReachabilityMap, reach: f64
             grasps: &grasps,
         };
         let radius = reach + mobile_from_base.translation.vector.xy().norm();
-        let mut outcomes = [Outcome::default(), Outcome::default()];
-        for seed in 0..TRIALS {
-            let [uniform, mapped] = &mut outcomes;
-            trial(&mut problem, || UniformBases { radius }, Seed::new(seed), uniform);
-            let mounted = || {
-                let (mounts, tool_from_tip) = (vec![mobile_from_base], Pose::identity());
-                MapBases::new(vec![MountedArm { map, mounts, tool_from_tip }], Some((&floor, &base)))
-            };
-            trial(&mut problem, mounted, Seed::new(seed), mapped);
+        for wanted in GOALS {
+            let mut outcomes = [Outcome::default(), Outcome::default()];
+            for number in 0..BLOCKS {
+                let [uniform, mapped] = &mut outcomes;
+                block(&mut problem, || UniformBases { radius }, (number, wanted), uniform);
+                let mounted = || {
+                    let (mounts, tool_from_tip) = (vec![mobile_from_base], Pose::identity());
+                    MapBases::new(vec![MountedArm { map, mounts, tool_from_tip }], Some((&floor, &base)))
+                };
+                block(&mut problem, mounted, (number, wanted), mapped);
+            }
+            let first = |o: &Outcome| 1e3 * median(&o.first);
+            let rate = |o: &Outcome| o.goals as f64 / o.seconds;
+            let share = |o: &Outcome| 100.0 * o.goals as f64 / f64::from(o.places.max(1));
+            let [uniform, mapped] = &outcomes;
+            rows.push(format!(
+                "| {name} | {} | {wanted} | {:.2} ms | {:.2} ms | {:.1} | {:.0} | {:.0} | {:.1} | {:.1} % | {:.1} % |",
+                scene.name,
+                first(uniform),
+                first(mapped),
+                first(uniform) / first(mapped),
+                rate(uniform),
+                rate(mapped),
+                rate(mapped) / rate(uniform),
+                share(uniform),
+                share(mapped),
+            ));
         }
-        let first = |o: &Outcome| 1e3 * o.first.iter().sum::<f64>() / o.first.len().max(1) as f64;
-        let rate = |o: &Outcome| o.goals as f64 / o.seconds;
-        let share = |o: &Outcome| 100.0 * o.goals as f64 / f64::from(o.places.max(1));
-        let [uniform, mapped] = &outcomes;
-        rows.push(format!(
-            "| {name} | {} | {:.2} ms | {:.2} ms | {:.1} | {:.0} | {:.0} | {:.1} | {:.1} % | {:.1} % |",
-            scene.name,
-            first(uniform),
-            first(mapped),
-            first(uniform) / first(mapped),
-            rate(uniform),
-            rate(mapped),
-            rate(mapped) / rate(uniform),
-            share(uniform),
-            share(mapped),
-        ));
     }
     rows
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
 }

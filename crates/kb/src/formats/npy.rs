@@ -66,6 +66,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<(String, Array)>, String> {
     let count = u16_at(bytes, end + 10).ok_or_else(short)?;
     let mut at = u32_at(bytes, end + 16).ok_or_else(short)? as usize;
     let mut arrays = Vec::new();
+    // Contents lie beside each other: a small file that names the same bytes again and again is refused, not unfolded.
+    let mut left = bytes.len();
     for _ in 0..count {
         if u32_at(bytes, at) != Some(CENTRAL) {
             return Err("its directory is damaged".into());
@@ -84,6 +86,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<(String, Array)>, String> {
         };
         let start = local + 30 + skipped(26)? + skipped(28)?;
         let content = slice(bytes, start, length).ok_or_else(short)?;
+        left = left.checked_sub(length).ok_or("its files overlap")?;
         arrays.push((name.clone(), of_npy(content).map_err(|wrong| format!("{name}: {wrong}"))?));
         at += 46 + name_length + behind;
     }
@@ -220,5 +223,18 @@ mod tests {
             // Any answer will do, but there is one.
             let _ = read(&bad);
         }
+    }
+
+    #[test]
+    fn the_same_bytes_are_not_unfolded_twice() {
+        let mut bytes = write(&[("a", Array::Numbers { shape: vec![1000], values: vec![0.5; 1000] })]);
+        let end = bytes.len() - 22;
+        let start = u32_at(&bytes, end + 16).unwrap() as usize;
+        let entry = bytes[start..end].to_vec();
+        let length = entry.len();
+        bytes.splice(end..end, entry);
+        assert_eq!(read(&bytes).unwrap().len(), 1);
+        bytes[end + length + 10] = 2;
+        assert_eq!(read(&bytes).unwrap_err(), "its files overlap");
     }
 }

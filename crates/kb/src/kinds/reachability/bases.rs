@@ -23,21 +23,32 @@ pub struct MountedArm<'a> {
 
 /// Bases from which maps say that arms reach, and whose footprint is clear of obstacles.
 ///
-/// A base is drawn uniformly from the disc that holds them all, until one is clear and the map says yes: questions to the map are
-/// so fast that this is over before a distribution is made. Only for poses of which this finds little a distribution is made, and
-/// kept (thesis, section 4.5).
+/// A few bases are drawn uniformly from the disc that holds them all: where every third reaches and is clear, one is found before a
+/// distribution is made. For other poses that is made, and kept (thesis, section 4.5): of its samples all reach, and the first that is
+/// clear is taken. Only where hardly any is, its cells are pruned.
 pub struct MapBases<'a> {
     arms: Vec<MountedArm<'a>>,
     around: Option<(&'a Floor, &'a Prism)>,
     masses: Vec<(usize, Pose, f64)>,
-    placements: Vec<(usize, Pose, Placements)>,
+    placements: Vec<Made>,
+}
+
+/// The distribution of a pose.
+struct Made {
+    arm: usize,
+    world_from_tool: Pose,
+    placements: Placements,
+    pruned: bool,
 }
 
 /// Bases from which the mass of a pose is guessed.
-const GUESSED: u32 = 24;
+const GUESSED: u32 = 12;
 
-/// Bases until one is clear and reaches.
-const TRIES: usize = 300;
+/// Uniform bases until one is clear and reaches: as many as take about as long as making a distribution.
+const UNIFORM: usize = 24;
+
+/// Samples of a distribution until one is clear.
+const TRIES: usize = 100;
 
 impl<'a> MapBases<'a> {
     /// Bases for these arms, on a floor with obstacles or on an empty one.
@@ -66,32 +77,43 @@ impl<'a> MapBases<'a> {
         mounts.iter().filter_map(of_mount).reduce(f64::max)
     }
 
-    /// A base anywhere in the disc, if it is clear and the map says yes.
+    /// A base anywhere in the disc, if the map says yes.
     fn try_one(&self, arm: usize, target: &Target, radius: f64, rng: &mut Rng) -> Option<Placement> {
         let (distance, angle) = (radius * rng.unit().sqrt(), rng.range(-PI, PI));
         let p = target.world_from_tip.translation.vector;
         let position = [p.x + distance * libm::cos(angle), p.y + distance * libm::sin(angle)];
         let placement = Placement { position, yaw: rng.range(-PI, PI), target: 0, mount: 0 };
-        if !self.is_clear(&placement) {
-            return None;
-        }
         let MountedArm { map, mounts, .. } = &self.arms[arm];
         let mobile_from_tip = placement.world_from_mobile().inv_mul(&target.world_from_tip);
         let reached = |mount: &Pose| map.verdict(&mount.inv_mul(&mobile_from_tip)) == Verdict::Yes;
         mounts.iter().any(reached).then_some(placement)
     }
 
-    /// The area of the bases of a pose, as far as a few of them tell; zero only when there is none.
-    fn guess(&self, arm: usize, world_from_tool: &Pose) -> f64 {
+    /// The area of the bases of a pose, obstacles apart, as far as a few of them tell; zero only when there is none.
+    fn guess(&mut self, arm: usize, world_from_tool: &Pose) -> f64 {
         let target = self.target(arm, world_from_tool);
         let Some(radius) = self.radius(arm, &target) else { return 0.0 };
         let mut rng = Seed::new(0).split("bases of a pose").rng();
         let found = (0..GUESSED).filter(|_| self.try_one(arm, &target, radius, &mut rng).is_some()).count();
-        let MountedArm { map, mounts, .. } = &self.arms[arm];
-        if found == 0 && Placements::new(map, &[target], mounts, Trust::Whole).is_empty() {
-            return 0.0;
+        if found == 0 {
+            let made = self.made(arm, world_from_tool);
+            if self.placements[made].placements.is_empty() {
+                return 0.0;
+            }
         }
         (found as f64).max(0.25) / f64::from(GUESSED) * PI * radius * radius
+    }
+
+    /// Position of the distribution of a pose, which is made unless it was before.
+    fn made(&mut self, arm: usize, world_from_tool: &Pose) -> usize {
+        let is_this = |made: &Made| made.arm == arm && made.world_from_tool == *world_from_tool;
+        self.placements.iter().position(is_this).unwrap_or_else(|| {
+            let MountedArm { map, mounts, .. } = &self.arms[arm];
+            let target = self.target(arm, world_from_tool);
+            let placements = Placements::new(map, &[target], mounts, Trust::Whole);
+            self.placements.push(Made { arm, world_from_tool: *world_from_tool, placements, pruned: false });
+            self.placements.len() - 1
+        })
     }
 }
 
@@ -109,20 +131,30 @@ impl BaseDistribution for MapBases<'_> {
     fn draw(&mut self, arm: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<[f64; 3]> {
         let target = self.target(arm, world_from_tool);
         let radius = self.radius(arm, &target)?;
-        let found = (0..TRIES).find_map(|_| self.try_one(arm, &target, radius, rng)).or_else(|| {
-            let is_this =
-                |(number, pose, _): &(usize, Pose, Placements)| *number == arm && pose == world_from_tool;
-            let entry = self.placements.iter().position(is_this).unwrap_or_else(|| {
-                let MountedArm { map, mounts, .. } = &self.arms[arm];
-                let mut placements = Placements::new(map, &[target], mounts, Trust::Whole);
-                if let Some((floor, base)) = self.around {
-                    placements.prune(|placement| floor.is_clear(base, placement));
-                }
-                self.placements.push((arm, *world_from_tool, placements));
-                self.placements.len() - 1
-            });
-            self.placements[entry].2.sample_where(rng, TRIES, |placement| self.is_clear(placement))
-        })?;
+        let found = (0..UNIFORM)
+            .find_map(|_| {
+                self.try_one(arm, &target, radius, rng).filter(|placement| self.is_clear(placement))
+            })
+            .or_else(|| self.draw_made(arm, world_from_tool, rng))?;
         Some([found.position[0], found.position[1], found.yaw])
+    }
+}
+
+impl MapBases<'_> {
+    /// A clear sample of the distribution of a pose, which is pruned when there are few.
+    fn draw_made(&mut self, arm: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<Placement> {
+        let made = self.made(arm, world_from_tool);
+        let clear = |this: &Self, rng: &mut Rng| {
+            this.placements[made].placements.sample_where(rng, TRIES, |placement| this.is_clear(placement))
+        };
+        let found = clear(self, rng);
+        if found.is_some() || self.placements[made].pruned {
+            return found;
+        }
+        if let (Some((floor, base)), made) = (self.around, &mut self.placements[made]) {
+            made.placements.prune(|placement| floor.is_clear(base, placement));
+        }
+        self.placements[made].pruned = true;
+        clear(self, rng)
     }
 }

@@ -1,6 +1,6 @@
 //! What stands on the floor, and whether a base fits between it.
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Point2, Point3, Vector2};
 use robotc_core::Pose;
 use robotc_core::geom::{ConvexParts, ConvexPolygon};
 use robotc_planning::placement::Prism;
@@ -43,22 +43,50 @@ impl Floor {
 
     /// Whether a footprint touches no obstacle when its base stands there.
     pub fn is_clear(&self, base: &Prism, placement: &Placement) -> bool {
-        let (sine, cosine) = (libm::sin(placement.yaw), libm::cos(placement.yaw));
         let [x, y] = placement.position;
-        let reach = base.footprint.iter().map(|[a, b]| a * a + b * b).fold(0.0, f64::max).sqrt();
-        let near = |outline: &&Outline| {
+        // Two circles about the base, one that holds the footprint and one that it holds, settle most places.
+        let middle = Point3::new(0.0, 0.0, 0.5 * (base.heights.0 + base.heights.1));
+        let within = (-base.excess(&middle)).max(0.0);
+        let around = base.footprint.iter().map(|[a, b]| a * a + b * b).fold(0.0, f64::max).sqrt();
+        let mut unsettled = Vec::new();
+        for outline in &self.outlines {
             let (dx, dy) = (outline.centre.x - x, outline.centre.y - y);
-            let touching = reach + outline.radius;
-            dx * dx + dy * dy <= touching * touching
-        };
-        let mut near = self.outlines.iter().filter(near).peekable();
-        if near.peek().is_none() {
+            let touching = around + outline.radius + ROUNDING;
+            if dx * dx + dy * dy > touching * touching {
+                continue;
+            }
+            let distance = distance(outline.polygon.corners(), &Point2::new(x, y));
+            if distance < within - ROUNDING {
+                return false;
+            }
+            if distance <= around + ROUNDING {
+                unsettled.push(outline);
+            }
+        }
+        if unsettled.is_empty() {
             return true;
         }
+        let (sine, cosine) = (libm::sin(placement.yaw), libm::cos(placement.yaw));
         let placed = |[a, b]: &[f64; 2]| Point2::new(x + cosine * a - sine * b, y + sine * a + cosine * b);
         let footprint = ConvexPolygon::hull_of(base.footprint.iter().map(placed));
-        near.all(|outline| footprint.is_apart_from(&outline.polygon))
+        unsettled.iter().all(|outline| footprint.is_apart_from(&outline.polygon))
     }
+}
+
+/// Distances this near to a circle's radius settle nothing, metres.
+const ROUNDING: f64 = 1e-9;
+
+/// Distance of a point from a convex polygon, its corners counter-clockwise; zero inside.
+fn distance(corners: &[Point2<f64>], point: &Point2<f64>) -> f64 {
+    let mut inside = corners.len() > 2;
+    let mut nearest = f64::INFINITY;
+    for (i, a) in corners.iter().enumerate() {
+        let (along, to) = (corners[(i + 1) % corners.len()] - a, point - a);
+        inside &= along.perp(&to) >= 0.0;
+        let share = (to.dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        nearest = nearest.min((to - along * share).norm_squared());
+    }
+    if inside { 0.0 } else { nearest.sqrt() }
 }
 
 impl Outline {

@@ -11,13 +11,18 @@ pub struct FreeValues {
 impl FreeValues {
     /// All combinations of `samples` evenly spaced values of each range.
     pub(super) fn evenly(ranges: &[(f64, f64)], samples: usize) -> Self {
-        let mut rows = vec![Vec::new()];
-        for &(low, high) in ranges {
-            let value = |k: usize| low + (high - low) * (k as f64 + 0.5) / samples as f64;
-            let longer = |row: Vec<f64>| (0..samples).map(move |k| [row.as_slice(), &[value(k)]].concat());
-            rows = rows.into_iter().flat_map(longer).collect();
+        let (width, rows) = (ranges.len(), samples.pow(ranges.len() as u32));
+        let mut values = Vec::with_capacity(rows * width);
+        for row in 0..rows {
+            // The last joint runs fastest.
+            let mut stride = rows;
+            for &(low, high) in ranges {
+                stride /= samples;
+                let k = row / stride % samples;
+                values.push(low + (high - low) * (k as f64 + 0.5) / samples as f64);
+            }
         }
-        Self { width: ranges.len(), rows: rows.len(), values: rows.concat() }
+        Self { width, rows, values }
     }
 
     /// As many rows: these values first, and then all but the farthest in the order of their distance from them, in shares of
@@ -30,7 +35,8 @@ impl FreeValues {
         let mut order: Vec<(f64, usize)> = (0..self.rows).map(|i| (away(self.row(i)), i)).collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
         order.pop();
-        let mut values = first.to_vec();
+        let mut values = Vec::with_capacity(self.values.len());
+        values.extend_from_slice(first);
         order.iter().for_each(|&(_, i)| values.extend(self.row(i)));
         Self { width: self.width, rows: self.rows, values }
     }
