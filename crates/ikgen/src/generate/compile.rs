@@ -11,7 +11,7 @@ use super::problem::Problem;
 use super::strategies::{self, Strategy};
 use crate::GoalType;
 use crate::check;
-use crate::ir::Program;
+use crate::ir::{Program, RootKind};
 use crate::passes;
 use crate::report::poses::{sets, slides};
 use crate::run::Solver;
@@ -29,8 +29,9 @@ const EXACT: f64 = 1e-9;
 /// one that rounding of the pose moves the answer by more than proofs allow.
 const BRANCH: f64 = 1e-3;
 
-/// How many times as many trial poses a program of a snapped chain has to solve.
-const SNAPPED: usize = 4;
+/// How many times as many trial poses a program has to solve that is for a snapped chain, or solves six joints in general: what these
+/// lose they lose rarely.
+const RARELY: usize = 8;
 
 /// Choices of a compilation.
 #[derive(Debug, Clone, PartialEq)]
@@ -410,8 +411,8 @@ fn finished(
     }
     program.class = class.clone();
     let program = passes::optimise(&program);
-    // A difference that can hide roots hides them rarely.
-    let poses = if program.slack > 0.0 { SNAPPED * options.trial_poses } else { options.trial_poses };
+    let rarely = program.slack > 0.0 || program.uses(RootKind::Six);
+    let poses = if rarely { RARELY * options.trial_poses } else { options.trial_poses };
     let lost = trial(&program, chain, poses)?;
     Ok(Found { program, class, lost })
 }

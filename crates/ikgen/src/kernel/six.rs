@@ -28,7 +28,7 @@ pub type Turns = [[f64; 2]; 6];
 /// Most candidates of one pose.
 pub const MOST: usize = 48;
 
-/// Candidates that are nearer to each other in all cosines and sines are one, found in two orders.
+/// Candidates nearer to each other are one, found in two orders.
 const EQUAL: f64 = 1e-9;
 
 /// Candidate turns of six joints.
@@ -97,8 +97,7 @@ const MOST_VIEWS: usize = 4;
 /// Roots that are nearer to each other may be one.
 const APART: f64 = 3e-3;
 
-/// As far rounding parts a double root. Roots that are farther apart, but not clearly, ask for another order, in which the solutions
-/// may be told apart.
+/// As far rounding parts a double root. Roots that are farther apart, but not clearly, ask for another order.
 const MERGED: f64 = 1e-5;
 
 /// Number of orders.
@@ -292,7 +291,7 @@ fn look(
         let mean = angle + shift * multiplicity as f64 / together as f64;
         let [extremum, value, bend] = waves.extremum(mean);
         let fold = together == 2 && !order.squared && slack == 0.0;
-        // What the determinant itself is there also tells how far its waves are off.
+        // The determinant itself tells how far its waves are off.
         let exact = if fold { view.value(six, order.degree, extremum) } else { value };
         let off = (exact - value).abs() + FLAT * waves.largest;
         if together == 1 || fold && imaginary == 0.0 && exact.abs() > off {
