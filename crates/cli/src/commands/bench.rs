@@ -79,6 +79,9 @@ struct Motion {
     /// Plan each problem this often, each time with another seed
     #[arg(long, value_name = "K", default_value_t = BenchOptions::default().seeds)]
     seeds: u32,
+    /// Searches that race for the first path, each on a thread of its own; the path does not depend on which thread is faster
+    #[arg(long, value_name = "N", default_value_t = BenchOptions::default().racers, value_parser = clap::value_parser!(u32).range(1..=64))]
+    race: u32,
     /// Iterations after which a search gives up
     #[arg(long, value_name = "N", default_value_t = BenchOptions::default().motion.search.max_iterations)]
     iterations: u32,
@@ -137,7 +140,7 @@ fn motion(args: &Motion) -> Outcome {
     let clock = Instant::now();
     let now = || clock.elapsed().as_secs_f64();
     let (robot, ready_s) = robot(&args.input, &set, &now)?;
-    let mut options = BenchOptions { seeds: args.seeds, ..BenchOptions::default() };
+    let mut options = BenchOptions { seeds: args.seeds, racers: args.race, ..BenchOptions::default() };
     options.motion.search.max_iterations = args.iterations;
     let mut progress = Progress::new();
     let (mut done, total) = (0, set.problems.len());

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Args;
+use rayon::prelude::*;
 use robotc_kb::lock::Difference;
 use robotc_kb::{Graph, LockFile, Locked};
 
@@ -45,15 +46,16 @@ struct Item<'a> {
 
 pub(crate) fn run(args: &Compile) -> Outcome {
     let store = args.store.open()?;
+    let projects = crate::input::projects(&args.files, &args.settings)?;
+    let graphs: Vec<Outcome<Arc<Graph>>> = projects.par_iter().map(knowledge::plan).collect();
     let mut items = Vec::new();
-    for file in &args.files {
+    for (file, graph) in args.files.iter().zip(graphs) {
         let lock = match &args.lock {
             Some(path) => path.clone(),
             None => file.parent().unwrap_or(Path::new("")).join("robotc.lock"),
         };
         let section = section_name(&lock, file)?;
-        let graph = knowledge::plan(&crate::input::project(file, &args.settings)?)?;
-        items.push(Item { file, graph, lock, section });
+        items.push(Item { file, graph: graph?, lock, section });
     }
     if args.locked {
         accept(&items, |i, locked| locked.differences(&items[i].graph))?;

@@ -12,6 +12,8 @@ mod stl;
 pub use format::MeshFormat;
 pub use repair::Repairs;
 
+use std::sync::Arc;
+
 use thiserror::Error;
 
 use crate::model::TriMesh;
@@ -32,7 +34,9 @@ pub enum UpAxis {
 pub struct LoadedMesh {
     /// The triangles; at least one. COLLADA units and node transforms are applied, so COLLADA comes in metres; STL and
     /// OBJ come in whatever unit they were written in. The axes are the file's: see `up`.
-    pub mesh: TriMesh,
+    pub mesh: Arc<TriMesh>,
+    /// What the file turned out to be.
+    pub format: MeshFormat,
     /// What a COLLADA file declares; `None` for the other formats and when it declares nothing.
     ///
     /// It is not applied: descriptions of robots mean the coordinates as they stand, whatever the file declares (RViz
@@ -67,11 +71,12 @@ const MOST_FACES: usize = 10_000_000;
 
 /// Reads a mesh. The content decides the format; `extension` (without its dot, any case) decides when that is silent.
 pub fn read(bytes: &[u8], extension: &str) -> Result<LoadedMesh, MeshError> {
-    let (raw, up) = match MeshFormat::of(bytes, extension).ok_or(MeshError::UnknownFormat)? {
+    let format = MeshFormat::of(bytes, extension).ok_or(MeshError::UnknownFormat)?;
+    let (raw, up) = match format {
         MeshFormat::Stl => (stl::read(bytes)?, None),
         MeshFormat::Obj => (obj::read(bytes)?, None),
         MeshFormat::Dae => dae::read(bytes)?,
     };
     let (mesh, repairs) = repair::repaired(raw)?;
-    Ok(LoadedMesh { mesh, up, repairs })
+    Ok(LoadedMesh { mesh: Arc::new(mesh), format, up, repairs })
 }

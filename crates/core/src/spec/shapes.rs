@@ -10,9 +10,9 @@ use super::document::{Node, Table};
 use super::file;
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::geom::Aabb;
-use crate::mesh::{self, LoadedMesh, MeshFormat, UpAxis};
+use crate::mesh::{LoadedMesh, MeshFormat, UpAxis};
 use crate::model::{Geometry, Origin, Shape, TriMesh};
-use crate::system::System;
+use crate::system::{MeshFileError, System};
 
 /// Extents, in metres, outside of which a mesh is more likely in another unit than meant so.
 const USUAL_EXTENT: (f64, f64) = (0.002, 10.0);
@@ -64,8 +64,8 @@ impl<'a> Shapes<'a> {
         if let Some(known) = self.meshes.get(&key) {
             return Some(known.clone());
         }
-        let (loaded, format) = self.load(&path, place, diagnostics)?;
-        if let Some(entry) = table.entry("units").filter(|_| format == Some(MeshFormat::Dae)) {
+        let loaded = self.load(&path, place, diagnostics)?;
+        if let Some(entry) = table.entry("units").filter(|_| loaded.format == MeshFormat::Dae) {
             diagnostics.push(
                 Diagnostic::error("R0110", "a COLLADA file says its unit itself, and it has been applied")
                     .at(entry.key_span, "would be applied on top")
@@ -100,21 +100,14 @@ impl<'a> Shapes<'a> {
         Some(mesh)
     }
 
-    fn load(
-        &self,
-        path: &Path,
-        place: Span,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<(LoadedMesh, Option<MeshFormat>)> {
-        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
-        let name = path.display();
-        let finding = match self.system.read(path) {
-            Ok(bytes) => match mesh::read(&bytes, extension) {
-                Ok(loaded) => return Some((loaded, MeshFormat::of(&bytes, extension))),
-                Err(error) => Diagnostic::error("R0505", format!("mesh {name}: {error}"))
-                    .expected("an STL, OBJ or COLLADA file with triangles"),
-            },
-            Err(error) => Diagnostic::unreadable(path, &error),
+    fn load(&self, path: &Path, place: Span, diagnostics: &mut Diagnostics) -> Option<Arc<LoadedMesh>> {
+        let finding = match self.system.mesh(path) {
+            Ok(loaded) => return Some(loaded),
+            Err(MeshFileError::Mesh(error)) => {
+                Diagnostic::error("R0505", format!("mesh {}: {error}", path.display()))
+                    .expected("an STL, OBJ or COLLADA file with triangles")
+            }
+            Err(MeshFileError::Read(error)) => Diagnostic::unreadable(path, &error),
         };
         diagnostics.push(finding.at(place, "named here"));
         None

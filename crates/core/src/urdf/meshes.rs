@@ -11,7 +11,6 @@ use super::grouped::{Grouped, and_others};
 use super::resolve::{Resolved, is_away, resolve};
 use super::{LoadOptions, MeshPolicy};
 use crate::diag::{Diagnostic, Diagnostics, Span};
-use crate::mesh;
 use crate::model::{Shape, TriMesh};
 use crate::system::System;
 
@@ -141,9 +140,7 @@ impl<'a> MeshSource<'a> {
         if let Some(known) = self.files.get(path) {
             return known.clone();
         }
-        let extension = path.extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
-        let bytes = self.system.read(path).map_err(|e| e.to_string());
-        let loaded = bytes.and_then(|bytes| mesh::read(&bytes, &extension).map_err(|e| e.to_string()));
+        let loaded = self.system.mesh(path).map_err(|e| e.to_string());
         let result = loaded.map(|loaded| {
             if loaded.repairs.are_serious() {
                 let dropped = loaded.repairs.bad_indices;
@@ -151,7 +148,7 @@ impl<'a> MeshSource<'a> {
                     format!("{}: {dropped} faces name vertices that do not exist; dropped", path.display());
                 found.push(Diagnostic::warning("R0304", message).at(span, "used here"));
             }
-            Arc::new(loaded.mesh)
+            loaded.mesh.clone()
         });
         self.files.insert(path.to_owned(), result.clone());
         result

@@ -11,6 +11,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use postgres::types::ToSql;
 use postgres::{Client, Config, Error, NoTls, Row};
 
+use super::transfer::FOLDER;
 use super::{Depot, DepotError, Entry, Settings};
 use crate::key::{ContentHash, Key};
 
@@ -106,7 +107,7 @@ impl Depot for Database {
     }
 
     fn remove(&self, name: &str) -> Result<(), DepotError> {
-        if let Some(key) = name.strip_prefix("artefacts/") {
+        if let Some(key) = name.strip_prefix(FOLDER).and_then(|rest| rest.strip_prefix('/')) {
             self.rows("DELETE FROM robotc.artefact WHERE key = $1", &[&key])?;
         }
         self.rows("DELETE FROM robotc.object WHERE name = $1", &[&name]).map(drop)

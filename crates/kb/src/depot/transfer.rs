@@ -9,7 +9,7 @@ use crate::key::{ContentHash, Key};
 use crate::resolve::Knowledge;
 use crate::store::{Archive, Archived, Store, StoreError, Writer};
 
-const FOLDER: &str = "artefacts";
+pub(super) const FOLDER: &str = "artefacts";
 
 fn name(key: &Key) -> String {
     format!("{FOLDER}/{key}")

@@ -11,7 +11,7 @@ use crate::budget::Budget;
 use crate::certify::certify_path;
 use crate::edge::EdgeChecker;
 use crate::lanes::{LaneChecker, LaneMemory, LaneRobot, LaneStatistics, Width};
-use crate::motion::{MotionOptions, find_motion, shorten_motion};
+use crate::motion::{MotionOptions, Race, find_motion, race_motion, shorten_motion};
 use crate::scene::{RobotChecker, Rules};
 
 /// What a benchmark does.
@@ -21,13 +21,15 @@ pub struct BenchOptions {
     pub seeds: u32,
     /// How to plan.
     pub motion: MotionOptions,
+    /// Searches that race for the first path of each problem, each on a thread of its own; 1 is no race.
+    pub racers: u32,
     /// Lanes of the collision checks; paths do not depend on it.
     pub width: Width,
 }
 
 impl Default for BenchOptions {
     fn default() -> Self {
-        Self { seeds: 1, motion: MotionOptions::default(), width: Width::widest() }
+        Self { seeds: 1, motion: MotionOptions::default(), racers: 1, width: Width::widest() }
     }
 }
 
@@ -44,7 +46,7 @@ pub fn run(
     progress: &mut dyn FnMut(&Row),
 ) -> Result<Report, BenchError> {
     let mut rows = Vec::with_capacity(set.problems.len());
-    let mut memory = LaneMemory::default();
+    let mut memory: Vec<LaneMemory> = (0..options.racers.max(1)).map(|_| LaneMemory::default()).collect();
     let mut lanes: Option<Arc<LaneRobot>> = None;
     let mut others: Option<&[(String, f64)]> = None;
     for problem in &set.problems {
@@ -99,7 +101,7 @@ fn plan_problem(
     problem: &Problem,
     options: &BenchOptions,
     now: &dyn Fn() -> f64,
-    memory: &mut LaneMemory,
+    memory: &mut [LaneMemory],
 ) -> Row {
     let mut exact = checker(robot, stage);
     let mut wrong = |name: &str, q: &[f64]| {
@@ -162,20 +164,30 @@ fn attempt(
     options: &BenchOptions,
     seed: Seed,
     now: &dyn Fn() -> f64,
-    memory: &mut LaneMemory,
+    memory: &mut [LaneMemory],
 ) -> Attempt {
     let start = now();
     let micros = || (now() - start) * 1e6;
-    let mut checker = LaneChecker::new(&stage.lanes, &stage.scene, &robot.space, 0.0, options.width, memory);
+    let checker =
+        |memory| LaneChecker::new(&stage.lanes, &stage.scene, &robot.space, 0.0, options.width, memory);
+    let mut checkers: Vec<LaneChecker<'_>> = memory.iter_mut().map(checker).collect();
+    let (checker, others) = checkers.split_first_mut().expect("there is one search at least");
     let (budget, motion) = (Budget::unlimited(), &options.motion);
     let (from, to) = (&problem.start, &problem.goal);
-    let found = find_motion(&mut checker, from, to, &motion.search, &budget, seed.split("search"));
+    let stream = seed.split("search");
+    let found = match others.len() {
+        0 => find_motion(checker, from, to, &motion.search, &budget, stream),
+        _ => {
+            let race = Race { racers: options.racers, ..Race::default() };
+            race_motion(checker, others, race, from, to, &motion.search, &|| None, stream)
+        }
+    };
     let plan_us = micros();
     let iterations = found.as_ref().map_or(0, |found| found.iterations);
     let found = found.map_err(|failure| failure.to_string()).map(|found| {
         let cost = robot.space.length(&found.path);
         let seed = seed.split("shorten");
-        let simplified = shorten_motion(&mut checker, found.path, &motion.shorten, &budget, seed);
+        let simplified = shorten_motion(checker, found.path, &motion.shorten, &budget, seed);
         Found { cost, simplified }
     });
     Attempt { plan_us, total_us: micros(), statistics: checker.statistics(), iterations, found }

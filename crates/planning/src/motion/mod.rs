@@ -16,7 +16,7 @@ use robotc_core::Seed;
 use crate::budget::{Budget, Interrupt};
 use crate::edge::{EdgeChecker, Obstruction, Patience};
 
-pub use race::race_motion;
+pub use race::{Race, race_motion};
 pub use search::SearchOptions;
 pub use shorten::ShortenOptions;
 

@@ -4,7 +4,7 @@
 //! in weights of the object, its mass does not matter. A drive pushes with a constant force. Joints that share a drive, such as two
 //! jaws, are pulled to their common value by implicit springs: stiff against one joint alone, and free when all move together.
 
-use nalgebra::{Point3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Point3, UnitQuaternion, Vector3};
 use rapier3d_f64::dynamics::{
     FrictionModel, GenericJoint, GenericJointBuilder, ImpulseJointHandle, IntegrationParameters,
     JointAxesMask, JointAxis, MassProperties, MotorModel, RigidBodyBuilder, RigidBodyHandle,
@@ -91,9 +91,9 @@ struct Body {
 struct Joint {
     parent: usize,
     child: usize,
-    parent_from_joint: Pose,
-    motion: JointMotion,
-    axis: Unit<Vector3<f64>>,
+    /// From the parent's body to the link that the joint hangs on.
+    body_from_parent: Pose,
+    described: ModelJoint,
     /// The drive that moves it, times, plus; one that none moves stays at the last.
     drive: Option<usize>,
     multiplier: f64,
@@ -130,8 +130,7 @@ impl Rig {
             body_from[link.index()] = if joint.motion == JointMotion::Fixed {
                 (parent, body_from_parent * joint.parent_from_child(0.0))
             } else {
-                let parent_from_joint = body_from_parent * joint.parent_from_joint();
-                joints.push(Joint::of(model, hand, joint, parent, bodies.len(), parent_from_joint));
+                joints.push(Joint::of(model, hand, joint, parent, bodies.len(), body_from_parent));
                 bodies.push(Body::default());
                 (bodies.len() - 1, Pose::identity())
             };
@@ -204,7 +203,7 @@ impl Joint {
         joint: &ModelJoint,
         parent: usize,
         child: usize,
-        parent_from_joint: Pose,
+        body_from_parent: Pose,
     ) -> Self {
         let (dof, multiplier, offset) = match joint.drive {
             JointDrive::Fixed => (None, 0.0, 0.0),
@@ -219,38 +218,36 @@ impl Joint {
             Some(_) => (multiplier, offset),
             None => (0.0, 0.0_f64.clamp(limits[0], limits[1])),
         };
-        let (motion, axis) = (joint.motion, *joint.unit_axis());
-        Self { parent, child, parent_from_joint, motion, axis, drive, multiplier, offset, limits }
+        let described = joint.clone();
+        Self { parent, child, body_from_parent, described, drive, multiplier, offset, limits }
     }
 
     fn value(&self, values: &[f64]) -> f64 {
         self.drive.map_or(0.0, |drive| self.multiplier * values[drive]) + self.offset
     }
 
-    fn free_axis(&self) -> JointAxis {
-        if self.motion == JointMotion::Prismatic { JointAxis::LinX } else { JointAxis::AngX }
+    fn slides(&self) -> bool {
+        self.described.motion == JointMotion::Prismatic
     }
 
-    fn joint_from_child(&self, value: f64) -> Pose {
-        match self.motion {
-            JointMotion::Prismatic => {
-                Pose::from_parts((self.axis.into_inner() * value).into(), UnitQuaternion::identity())
-            }
-            _ => Pose::from_parts(
-                nalgebra::Translation3::identity(),
-                UnitQuaternion::from_axis_angle(&self.axis, value),
-            ),
-        }
+    fn free_axis(&self) -> JointAxis {
+        if self.slides() { JointAxis::LinX } else { JointAxis::AngX }
+    }
+
+    /// From the parent's body to the joint at value zero.
+    fn body_from_joint(&self) -> Pose {
+        self.body_from_parent * self.described.parent_from_joint()
     }
 
     /// Its value, from where its bodies are.
     fn measured(&self, world_from_parent: &Pose, world_from_child: &Pose) -> f64 {
-        let joint_from_child = (world_from_parent * self.parent_from_joint).inv_mul(world_from_child);
-        if self.motion == JointMotion::Prismatic {
-            return joint_from_child.translation.vector.dot(&self.axis);
+        let joint_from_child = (world_from_parent * self.body_from_joint()).inv_mul(world_from_child);
+        let axis = self.described.unit_axis();
+        if self.slides() {
+            return joint_from_child.translation.vector.dot(axis);
         }
         let turn = joint_from_child.rotation;
-        let half = libm::atan2(turn.imag().dot(&self.axis), turn.w);
+        let half = libm::atan2(turn.imag().dot(axis), turn.w);
         let angle = 2.0 * half;
         let full = std::f64::consts::TAU;
         // The value of its range, where that is longer than a turn the nearest to its middle.
@@ -259,15 +256,17 @@ impl Joint {
     }
 
     fn build(&self) -> GenericJoint {
-        let sliding = self.motion == JointMotion::Prismatic;
-        let locked =
-            if sliding { JointAxesMask::LOCKED_PRISMATIC_AXES } else { JointAxesMask::LOCKED_REVOLUTE_AXES };
+        let locked = if self.slides() {
+            JointAxesMask::LOCKED_PRISMATIC_AXES
+        } else {
+            JointAxesMask::LOCKED_REVOLUTE_AXES
+        };
         // Of the frames of a joint here, the first axis is the free one.
-        let aligned = UnitQuaternion::rotation_between_axis(&Vector3::x_axis(), &self.axis)
+        let aligned = UnitQuaternion::rotation_between_axis(&Vector3::x_axis(), self.described.unit_axis())
             .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI));
         let aligned = Pose::from_parts(nalgebra::Translation3::identity(), aligned);
         GenericJointBuilder::new(locked)
-            .local_frame1(pose(&(self.parent_from_joint * aligned)))
+            .local_frame1(pose(&(self.body_from_joint() * aligned)))
             .local_frame2(pose(&aligned))
             .contacts_enabled(false)
             .limits(self.free_axis(), self.limits)
@@ -310,8 +309,8 @@ impl<'a> Scene<'a> {
         let mut placed = vec![attempt.object_from_palm * rig.palm_from_root; rig.bodies.len()];
         for joint in &rig.joints {
             let value = joint.value(&start);
-            placed[joint.child] =
-                placed[joint.parent] * joint.parent_from_joint * joint.joint_from_child(value);
+            let body_from_child = joint.body_from_parent * joint.described.parent_from_child(value);
+            placed[joint.child] = placed[joint.parent] * body_from_child;
         }
         let mut bodies = Vec::with_capacity(rig.bodies.len());
         for (i, body) in rig.bodies.iter().enumerate() {
@@ -398,7 +397,7 @@ impl<'a> Scene<'a> {
 
     /// Pushes both bodies of a joint along its axis, or turns them about it.
     fn push(&mut self, joint: &Joint, placed: &[Pose], share: f64) {
-        let axis = placed[joint.child].rotation * joint.axis.into_inner() * share;
+        let axis = placed[joint.child].rotation * joint.described.unit_axis().into_inner() * share;
         let (child, parent) = (self.bodies[joint.child], self.bodies[joint.parent]);
         for (body, way) in [(child, 1.0), (parent, -1.0)] {
             let body = &mut self.world.bodies[body];
