@@ -46,7 +46,7 @@ struct Read {
 
 enum Spec {
     Robot(Option<RobotSpec>),
-    Task(Option<TaskSpec>),
+    Task(Option<Box<TaskSpec>>),
 }
 
 impl Read {
@@ -56,7 +56,7 @@ impl Read {
         let (spec, found) = match kind_of(path) {
             Some(SpecKind::Task) => {
                 let (spec, found) = spec::load_task(system, &mut sources, path, &table);
-                (Spec::Task(spec), found)
+                (Spec::Task(spec.map(Box::new)), found)
             }
             Some(SpecKind::Robot) => {
                 let (spec, found) = spec::load_robot(system, &mut sources, path, &table);
@@ -76,7 +76,10 @@ impl Read {
     fn project(self, settings: &Settings) -> Outcome<Project> {
         let Self { spec, found, sources } = self;
         match spec {
-            Spec::Task(spec) => Ok(Project::of_task(&finish(spec, &found, &sources, settings)?)),
+            Spec::Task(spec) => {
+                let spec = spec.map(|spec| *spec);
+                Ok(Project::of_task(&finish(spec, &found, &sources, settings)?))
+            }
             Spec::Robot(spec) => {
                 let mut spec = accept(spec, &found, &sources)?;
                 settings.apply(&mut spec.parameters);
