@@ -401,7 +401,7 @@ impl<'a> Scene<'a> {
         let (child, parent) = (self.bodies[joint.child], self.bodies[joint.parent]);
         for (body, way) in [(child, 1.0), (parent, -1.0)] {
             let body = &mut self.world.bodies[body];
-            match joint.motion {
+            match joint.described.motion {
                 JointMotion::Prismatic => body.add_force(vector(&(axis * way)), true),
                 _ => body.add_torque(vector(&(axis * way)), true),
             }
