@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
-use robotc_core::spec::{self, RobotSpec, SpecKind, TaskSpec};
+use robotc_core::spec::{self, SpecKind, TaskSpec};
 use robotc_core::system::MeshesOnce;
 use robotc_core::{Sources, System, diag::Diagnostics};
 use robotc_kb::Project;
@@ -27,66 +27,46 @@ pub(crate) fn kind_of(path: &Path) -> Option<SpecKind> {
 
 /// Reads a robot or task specification into what the knowledge base compiles.
 pub(crate) fn project(path: &Path, settings: &Settings) -> Outcome<Project> {
-    Read::of(&OsSystem, path)?.project(settings)
+    let (project, found, sources) = read(&OsSystem, path, settings)?;
+    accept(project, &found, &sources)
 }
 
 /// The same for several, which are read at once; what is found is printed in their order.
 pub(crate) fn projects(paths: &[PathBuf], settings: &Settings) -> Outcome<Vec<Project>> {
     let system = MeshesOnce::<OsSystem>::default();
-    let read: Vec<Outcome<Read>> = paths.par_iter().map(|path| Read::of(&system, path)).collect();
-    read.into_iter().map(|read| read?.project(settings)).collect()
+    let read: Vec<_> = paths.par_iter().map(|path| read(&system, path, settings)).collect();
+    read.into_iter()
+        .map(|read| read.and_then(|(project, found, sources)| accept(project, &found, &sources)))
+        .collect()
 }
 
-/// A specification with what was found in it, before any of that is printed.
-struct Read {
-    spec: Spec,
-    found: Diagnostics,
-    sources: Sources,
-}
-
-enum Spec {
-    Robot(Option<RobotSpec>),
-    Task(Option<Box<TaskSpec>>),
-}
-
-impl Read {
-    fn of(system: &dyn System, path: &Path) -> Outcome<Self> {
-        let mut sources = Sources::new();
-        let table = parameter_table();
-        let (spec, found) = match kind_of(path) {
-            Some(SpecKind::Task) => {
-                let (spec, found) = spec::load_task(system, &mut sources, path, &table);
-                (Spec::Task(spec.map(Box::new)), found)
-            }
-            Some(SpecKind::Robot) => {
-                let (spec, found) = spec::load_robot(system, &mut sources, path, &table);
-                (Spec::Robot(spec), found)
-            }
-            None => {
-                return Err(Failure::Input(format!(
-                    "{} is neither a *.robot.toml nor a *.task.toml; `robotc init` writes one from a URDF",
-                    path.display()
-                )));
-            }
-        };
-        Ok(Self { spec, found, sources })
-    }
-
-    /// Prints what was found.
-    fn project(self, settings: &Settings) -> Outcome<Project> {
-        let Self { spec, found, sources } = self;
-        match spec {
-            Spec::Task(spec) => {
-                let spec = spec.map(|spec| *spec);
-                Ok(Project::of_task(&finish(spec, &found, &sources, settings)?))
-            }
-            Spec::Robot(spec) => {
-                let mut spec = accept(spec, &found, &sources)?;
-                settings.apply(&mut spec.parameters);
-                Ok(Project::of_robot(&spec))
-            }
+/// A project, if the specification is one, with what was found in it; nothing is printed.
+fn read(
+    system: &dyn System,
+    path: &Path,
+    settings: &Settings,
+) -> Outcome<(Option<Project>, Diagnostics, Sources)> {
+    let mut sources = Sources::new();
+    let table = parameter_table();
+    let (project, found) = match kind_of(path) {
+        Some(SpecKind::Task) => {
+            let (mut spec, found) = spec::load_task(system, &mut sources, path, &table);
+            spec.iter_mut().for_each(|spec| settings.apply(&mut spec.parameters));
+            (spec.as_ref().map(Project::of_task), found)
         }
-    }
+        Some(SpecKind::Robot) => {
+            let (mut spec, found) = spec::load_robot(system, &mut sources, path, &table);
+            spec.iter_mut().for_each(|spec| settings.apply(&mut spec.parameters));
+            (spec.as_ref().map(Project::of_robot), found)
+        }
+        None => {
+            return Err(Failure::Input(format!(
+                "{} is neither a *.robot.toml nor a *.task.toml; `robotc init` writes one from a URDF",
+                path.display()
+            )));
+        }
+    };
+    Ok((project, found, sources))
 }
 
 /// Reads a task specification.
@@ -97,17 +77,7 @@ pub(crate) fn task(path: &Path, settings: &Settings) -> Outcome<TaskSpec> {
     }
     let mut sources = Sources::new();
     let (spec, found) = spec::load_task(&OsSystem, &mut sources, path, &parameter_table());
-    finish(spec, &found, &sources, settings)
-}
-
-/// Prints what was found in a task, and sets its parameters.
-fn finish(
-    spec: Option<TaskSpec>,
-    found: &Diagnostics,
-    sources: &Sources,
-    settings: &Settings,
-) -> Outcome<TaskSpec> {
-    let mut spec = accept(spec, found, sources)?;
+    let mut spec = accept(spec, &found, &sources)?;
     settings.apply(&mut spec.parameters);
     Ok(spec)
 }
