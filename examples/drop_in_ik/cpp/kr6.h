@@ -57,6 +57,25 @@ int kr6_solve(const kr6_frame *base_from_tip, const double *given, kr6_solutions
 /* The same for a chain whose constants are near those of the described one: a calibrated arm. */
 int kr6_solve_on(const kr6_chain *chain, const kr6_frame *base_from_tip, const double *given, kr6_solutions *out);
 
+/* Infinitely many solutions through one, where axes have lined up. */
+typedef struct {
+    /* Which joints move together: 1 for the leading one, 0 for those that stay. */
+    double direction[KR6_VARIABLES];
+    int leader;
+    /* Whether solution + t direction reaches the pose for every t; otherwise a curve starts in that direction, and t is what the
+       leading joint has moved. */
+    int is_line;
+    /* Smallest and largest t, zero inside; from -pi to pi when the family closes. */
+    double interval[2];
+} kr6_family;
+
+/* The families through a solution of a pose; returns their number, 0 at a regular pose. */
+int kr6_families(const kr6_frame *base_from_tip, const double solution[KR6_VARIABLES], kr6_family out[KR6_VARIABLES]);
+
+/* The member of a family through a solution at t, angles not brought back to (-pi, pi]; 0, and nothing meant, outside of its interval. */
+int kr6_family_member(const kr6_frame *base_from_tip, const double solution[KR6_VARIABLES], const kr6_family *family, double t,
+                       double member[KR6_VARIABLES]);
+
 #ifdef __cplusplus
 }
 #endif

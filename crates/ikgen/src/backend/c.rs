@@ -12,7 +12,7 @@ use crate::run::TrueChain;
 const KERNEL: [&str; 2] = [include_str!("kernel.c"), include_str!("kernel_general.c")];
 
 /// What each section calls, itself in the order of the file.
-const SECTIONS: [(&str, &[&str]); 30] = [
+const SECTIONS: [(&str, &[&str]); 31] = [
     ("sqrt", &[]),
     ("abs", &[]),
     ("finite", &[]),
@@ -43,7 +43,55 @@ const SECTIONS: [(&str, &[&str]); 30] = [
     ("six", &["null", "bends"]),
     ("chain", &["sqrt", "abs", "finite", "cos_sin"]),
     ("candidate", &["chain", "angle_of"]),
+    ("family", &["chain"]),
 ];
+
+/// What the header says of continua of solutions, known of whole poses.
+const FAMILIES: &str = "\
+/* Infinitely many solutions through one, where axes have lined up. */
+typedef struct {
+    /* Which joints move together: 1 for the leading one, 0 for those that stay. */
+    double direction[UPPER_VARIABLES];
+    int leader;
+    /* Whether solution + t direction reaches the pose for every t; otherwise a curve starts in that direction, and t is what the
+       leading joint has moved. */
+    int is_line;
+    /* Smallest and largest t, zero inside; from -pi to pi when the family closes. */
+    double interval[2];
+} NAME_family;
+
+/* The families through a solution of a pose; returns their number, 0 at a regular pose. */
+int NAME_families(const NAME_frame *base_from_tip, const double solution[UPPER_VARIABLES], NAME_family out[UPPER_VARIABLES]);
+
+/* The member of a family through a solution at t, angles not brought back to (-pi, pi]; 0, and nothing meant, outside of its interval. */
+int NAME_family_member(const NAME_frame *base_from_tip, const double solution[UPPER_VARIABLES], const NAME_family *family, double t,
+                       double member[UPPER_VARIABLES]);
+
+";
+
+/// The same in the source.
+const FAMILIES_SOURCE: &str = "
+int NAME_families(const NAME_frame *base_from_tip, const double solution[UPPER_VARIABLES], NAME_family out[UPPER_VARIABLES])
+{
+    return ik_families_of(&NAME_described, base_from_tip, solution, out);
+}
+
+int NAME_family_member(const NAME_frame *base_from_tip, const double solution[UPPER_VARIABLES], const NAME_family *family, double t,
+                       double member[UPPER_VARIABLES])
+{
+    int i;
+    for (i = 0; i < UPPER_VARIABLES; i++) member[i] = solution[i];
+    return ik_member_of(&NAME_described, base_from_tip, family, member, t);
+}
+";
+
+/// A text about families with the names of a solver; nothing for goals that are not whole poses.
+fn families(program: &Program, name: &str, text: &str) -> String {
+    match program.goal {
+        GoalType::Transform6D => text.replace("NAME", name).replace("UPPER", &name.to_uppercase()),
+        _ => String::new(),
+    }
+}
 
 /// The two files of a solver.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -128,8 +176,9 @@ fn header(program: &Program, chain: &TrueChain, name: &str) -> String {
          int {name}_solve(const {name}_frame *base_from_tip, const double *given, {name}_solutions *out);\n\n\
          /* The same for a chain whose constants are near those of the described one: a calibrated arm. */\n\
          int {name}_solve_on(const {name}_chain *chain, const {name}_frame *base_from_tip, const double *given, {name}_solutions *out);\n\n\
-         #ifdef __cplusplus\n}}\n#endif\n\n#endif\n",
+         {families}#ifdef __cplusplus\n}}\n#endif\n\n#endif\n",
         about = about(program),
+        families = families(program, name, FAMILIES),
     )
 }
 
@@ -154,7 +203,8 @@ fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> Strin
          /* Compile without contraction of products and sums (gcc and clang: -ffp-contract=off) for the same bits everywhere;\n   \
          with IK_FREESTANDING nothing of the C library is called. */\n\n\
          #define IK_JOINTS {upper}_VARIABLES\n#define IK_VARIABLES {all}\n#define IK_LINKS {upper}_LINKS\n#define IK_CAPACITY {upper}_CAPACITY\n#define IK_MOST_ROOTS {most_roots}\n\
-         typedef {name}_frame ik_frame;\ntypedef {name}_link ik_link;\ntypedef {name}_chain ik_chain;\ntypedef {name}_solutions ik_solutions;\n\n"
+         typedef {name}_frame ik_frame;\ntypedef {name}_link ik_link;\ntypedef {name}_chain ik_chain;\ntypedef {name}_solutions ik_solutions;\n{}\n",
+        families(program, name, "typedef NAME_family ik_family;\n")
     );
     let flags = |flags: Vec<bool>| {
         let words: Vec<&str> = flags.into_iter().map(|f| if f { "1" } else { "0" }).collect();
@@ -186,7 +236,7 @@ fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> Strin
         flags(held)
     );
     described(chain, name, &mut out);
-    for (section, _) in SECTIONS.iter().filter(|(section, _)| needed(section, body)) {
+    for (section, _) in SECTIONS.iter().filter(|(section, _)| needed(section, program, body)) {
         let start = format!("/* == {section} == */\n");
         let text =
             KERNEL.iter().find_map(|file| file.split(&start).nth(1)).expect("every section is in a file");
@@ -222,6 +272,7 @@ fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> Strin
          return ik_solve_with(chain, 0, base_from_tip, given, out);\n}}\n",
         program.slack
     );
+    out += &families(program, name, FAMILIES_SOURCE);
     out
 }
 
@@ -231,12 +282,13 @@ fn without_added(text: &str) -> String {
 }
 
 /// Whether a section is called by the body, by the fixed part, or by a section that is.
-fn needed(section: &str, body: &str) -> bool {
+fn needed(section: &str, program: &Program, body: &str) -> bool {
     let called = |text: &str| text.contains(&format!("ik_{section}("));
     section == "candidate"
+        || (section == "family" && program.goal == GoalType::Transform6D)
         || called(body)
         || (section == "roots" && body.contains("ik_roots"))
-        || SECTIONS.iter().any(|(other, calls)| calls.contains(&section) && needed(other, body))
+        || SECTIONS.iter().any(|(other, calls)| calls.contains(&section) && needed(other, program, body))
 }
 
 fn mentions(text: &str, word: &str) -> bool {

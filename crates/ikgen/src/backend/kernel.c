@@ -507,15 +507,15 @@ static void ik_mirror_rows(const double *mirror, double weight, int from, int en
 }
 
 /* The step x of the variables that makes |columns x - error|^2 + damping |x|^2 least; held ones stay. */
-static void ik_damped(double columns[IK_VARIABLES][6], const double error[6], double damping, double step[IK_VARIABLES])
+static void ik_damped(double columns[IK_VARIABLES][6], const double error[6], double damping, const int *held, double step[IK_VARIABLES])
 {
     double m[IK_VARIABLES][6 + IK_VARIABLES] = { { 0.0 } }, right[6 + IK_VARIABLES] = { 0.0 }, diagonal[IK_VARIABLES];
     double mirror[6 + IK_VARIABLES];
     int i, k, r;
     for (r = 0; r < 6; r++) right[r] = error[r];
     for (i = 0; i < IK_VARIABLES; i++) {
-        for (r = 0; r < 6; r++) m[i][r] = ik_held[i] ? 0.0 : columns[i][r];
-        m[i][6 + i] = ik_held[i] ? 1.0 : ik_sqrt(damping);
+        for (r = 0; r < 6; r++) m[i][r] = held[i] ? 0.0 : columns[i][r];
+        m[i][6 + i] = held[i] ? 1.0 : ik_sqrt(damping);
     }
     for (k = 0; k < IK_VARIABLES; k++) {
         int end = 7 + k;
@@ -532,40 +532,49 @@ static void ik_damped(double columns[IK_VARIABLES][6], const double error[6], do
     for (i = IK_VARIABLES - 1; i >= 0; i--) {
         double sum = right[i];
         for (k = i + 1; k < IK_VARIABLES; k++) sum -= m[k][i] * step[k];
-        step[i] = ik_held[i] ? 0.0 : sum / diagonal[i];
+        step[i] = held[i] ? 0.0 : sum / diagonal[i];
     }
 }
 
-/* Brings values onto the pose by Newton steps; returns the smallest distance met. */
-static double ik_polish(const ik_chain *chain, const ik_frame *pose, double values[IK_VARIABLES])
+/* Distance to the pose, its six-vector (metres, radians), and the column of each variable. */
+static double ik_linearise(const ik_chain *chain, const ik_frame *pose, const double *values, double error[6], double columns[IK_VARIABLES][6])
+{
+    double axes[IK_LINKS][6];
+    ik_frame tip;
+    int i, j, k;
+    ik_reach(chain, values, &tip, axes);
+    for (i = 0; i < 3; i++) {
+        error[i] = pose->position[i] - tip.position[i];
+        error[3 + i] = 0.0;
+        for (k = 0; k < 3; k++) {
+            int y = (i + 1) % 3, z = (i + 2) % 3;
+            error[3 + i] += 0.5 * (tip.rotation[y][k] * pose->rotation[z][k] - tip.rotation[z][k] * pose->rotation[y][k]);
+        }
+    }
+    for (j = 0; j < IK_VARIABLES; j++)
+        for (i = 0; i < 6; i++) columns[j][i] = 0.0;
+    for (j = 0; j < IK_LINKS; j++) {
+        const ik_link *link = &chain->links[j];
+        double *column = columns[link->variable], *z = axes[j], arm[3];
+        for (i = 0; i < 3; i++) arm[i] = tip.position[i] - axes[j][3 + i];
+        for (i = 0; i < 3; i++) {
+            int y = (i + 1) % 3, x = (i + 2) % 3;
+            column[i] += link->ratio * (link->slides ? z[i] : z[y] * arm[x] - z[x] * arm[y]);
+            if (!link->slides) column[3 + i] += link->ratio * z[i];
+        }
+    }
+    return ik_distance(&tip, pose);
+}
+
+/* Brings values onto the pose by Newton steps, but for those that are held; returns the smallest distance met. */
+static double ik_polish(const ik_chain *chain, const ik_frame *pose, double values[IK_VARIABLES], const int *held)
 {
     double at[IK_VARIABLES], best = HUGE_VAL, halved = HUGE_VAL;
-    int round, i, j, k, since = 0, patience = 20;
+    int round, i, since = 0, patience = 20;
     for (i = 0; i < IK_VARIABLES; i++) at[i] = values[i];
     for (round = 0; round < 50; round++) {
-        double axes[IK_LINKS][6], columns[IK_VARIABLES][6] = { { 0.0 } }, error[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
-        double step[IK_VARIABLES];
-        double distance, longest = 0.0, scale;
-        ik_frame tip;
-        ik_reach(chain, at, &tip, axes);
-        for (i = 0; i < 3; i++) {
-            error[i] = pose->position[i] - tip.position[i];
-            for (k = 0; k < 3; k++) {
-                int y = (i + 1) % 3, z = (i + 2) % 3;
-                error[3 + i] += 0.5 * (tip.rotation[y][k] * pose->rotation[z][k] - tip.rotation[z][k] * pose->rotation[y][k]);
-            }
-        }
-        for (j = 0; j < IK_LINKS; j++) {
-            const ik_link *link = &chain->links[j];
-            double *column = columns[link->variable], *z = axes[j], arm[3];
-            for (i = 0; i < 3; i++) arm[i] = tip.position[i] - axes[j][3 + i];
-            for (i = 0; i < 3; i++) {
-                int y = (i + 1) % 3, x = (i + 2) % 3;
-                column[i] += link->ratio * (link->slides ? z[i] : z[y] * arm[x] - z[x] * arm[y]);
-                if (!link->slides) column[3 + i] += link->ratio * z[i];
-            }
-        }
-        distance = ik_distance(&tip, pose);
+        double columns[IK_VARIABLES][6], error[6], step[IK_VARIABLES], longest = 0.0, scale;
+        double distance = ik_linearise(chain, pose, at, error, columns);
         /* What starts near lacks digits alone. */
         if (round == 0 && distance < 1e-7) patience = 4;
         if (distance < best) {
@@ -583,7 +592,7 @@ static double ik_polish(const ik_chain *chain, const ik_frame *pose, double valu
         } else if (since >= patience) {
             break;
         }
-        ik_damped(columns, error, 1e-22 + 0.25 * distance * distance, step);
+        ik_damped(columns, error, 1e-22 + 0.25 * distance * distance, held, step);
         for (i = 0; i < IK_VARIABLES; i++) if (ik_abs(step[i]) > longest) longest = ik_abs(step[i]);
         scale = longest > 0.3 ? 0.3 / longest : 1.0;
         for (i = 0; i < IK_VARIABLES; i++) at[i] += scale * step[i];
@@ -617,7 +626,7 @@ static int ik_settle(const ik_sink *sink, double steps[IK_VARIABLES][2], double 
     distance = ik_distance(&tip, sink->pose);
     if (!ik_finite(distance)) return 0;
     if (distance <= 1e-13) return 1;
-    if (!(ik_polish(sink->chain, sink->pose, values) < 1e-9)) return 0;
+    if (!(ik_polish(sink->chain, sink->pose, values, ik_held) < 1e-9)) return 0;
     for (i = 0; i < IK_VARIABLES; i++) {
         if (ik_slides[i] || ik_held[i]) continue;
         while (values[i] > 3.141592653589793) values[i] -= 6.283185307179586;
@@ -650,4 +659,163 @@ static void ik_offer(ik_sink *sink, double steps[IK_VARIABLES][2], double values
         for (i = 0; i < IK_JOINTS; i++) sink->out->values[sink->out->count][i] = values[i];
         sink->out->count++;
     }
+}
+
+/* == family == */
+/* The values after a step along a direction. */
+static void ik_along(const double *values, const double *direction, double t, double out[IK_VARIABLES])
+{
+    int i;
+    for (i = 0; i < IK_VARIABLES; i++) out[i] = values[i] + t * direction[i];
+}
+
+/* Follows a curve until the leading joint has moved by t; returns how far it came in steps of `least` or more. */
+static double ik_follow(const ik_chain *chain, const ik_frame *pose, const ik_family *family, double values[IK_VARIABLES], double t, double least)
+{
+    double last[IK_VARIABLES], wanted[IK_VARIABLES], next[IK_VARIABLES];
+    double gone = 0.0, step = 0.05, sign = t < 0.0 ? -1.0 : 1.0, rest, by;
+    int held[IK_VARIABLES], i, near;
+    for (i = 0; i < IK_VARIABLES; i++) {
+        last[i] = family->direction[i];
+        held[i] = ik_held[i] || i == family->leader;
+    }
+    while (gone < ik_abs(t) && step >= least) {
+        rest = ik_abs(t) - gone;
+        by = sign * (step < rest ? step : rest);
+        ik_along(values, last, by, wanted);
+        for (i = 0; i < IK_VARIABLES; i++) next[i] = wanted[i];
+        near = ik_polish(chain, pose, next, held) < 1e-9;
+        for (i = 0; i < IK_VARIABLES; i++) near = near && ik_abs(next[i] - wanted[i]) < 0.2;
+        if (near) {
+            for (i = 0; i < IK_VARIABLES; i++) {
+                last[i] = (next[i] - values[i]) / by;
+                values[i] = next[i];
+            }
+            gone = step < rest ? gone + step : ik_abs(t);
+        } else {
+            step *= 0.5;
+        }
+    }
+    return sign * gone;
+}
+
+/* A basis of the directions in which joints move and the tip does not, each with its leading joint (1 there, 0 in the others);
+   returns their number. */
+static int ik_still(const ik_chain *chain, const ik_frame *pose, const double *values, double found[IK_VARIABLES][IK_VARIABLES], int leaders[IK_VARIABLES])
+{
+    double columns[IK_VARIABLES][6], error[6], swap;
+    int joints[IK_VARIABLES], n = 0, rank = 0, count, i, k, c, r;
+    ik_linearise(chain, pose, values, error, columns);
+    for (i = 0; i < IK_VARIABLES; i++) {
+        if (ik_held[i]) continue;
+        for (r = 0; r < 6; r++) columns[n][r] = columns[i][r];
+        joints[n++] = i;
+    }
+    /* Elimination with the largest entry of what is left as pivot. */
+    while (rank < n && rank < 6) {
+        int column = rank, row = rank, joint;
+        for (c = rank; c < n; c++)
+            for (r = rank; r < 6; r++)
+                if (ik_abs(columns[c][r]) > ik_abs(columns[column][row])) {
+                    column = c;
+                    row = r;
+                }
+        if (ik_abs(columns[column][row]) < 1e-6) break;
+        for (r = 0; r < 6; r++) {
+            swap = columns[rank][r];
+            columns[rank][r] = columns[column][r];
+            columns[column][r] = swap;
+        }
+        joint = joints[rank];
+        joints[rank] = joints[column];
+        joints[column] = joint;
+        for (c = 0; c < n; c++) {
+            swap = columns[c][rank];
+            columns[c][rank] = columns[c][row];
+            columns[c][row] = swap;
+        }
+        for (r = rank + 1; r < 6; r++) {
+            double factor = columns[rank][r] / columns[rank][rank];
+            for (c = rank; c < n; c++) columns[c][r] -= factor * columns[c][rank];
+        }
+        rank++;
+    }
+    count = n - rank;
+    for (k = 0; k < count; k++) {
+        double x[IK_VARIABLES];
+        for (c = 0; c < IK_VARIABLES; c++) x[c] = found[k][c] = 0.0;
+        x[rank + k] = 1.0;
+        for (r = rank - 1; r >= 0; r--) {
+            double sum = 0.0;
+            for (c = r + 1; c < n; c++) sum += columns[c][r] * x[c];
+            x[r] = -sum / columns[r][r];
+        }
+        for (c = 0; c < n; c++) found[k][joints[c]] = x[c];
+    }
+    for (k = 0; k < count; k++) {
+        /* The largest entry leads, of equal ones the last: dividing by it loses nothing. */
+        double row[IK_VARIABLES], largest;
+        int leader = 0, other;
+        for (i = 0; i < IK_VARIABLES; i++) if (ik_abs(found[k][i]) >= ik_abs(found[k][leader]) * (1.0 - 1e-6)) leader = i;
+        largest = found[k][leader];
+        for (i = 0; i < IK_VARIABLES; i++) row[i] = found[k][i] / largest;
+        for (other = 0; other < count; other++) {
+            double factor = found[other][leader];
+            for (i = 0; i < IK_VARIABLES; i++) found[other][i] -= factor * row[i];
+        }
+        for (i = 0; i < IK_VARIABLES; i++) found[k][i] = row[i];
+        leaders[k] = leader;
+    }
+    for (k = 0; k < count; k++)
+        for (i = 0; i < IK_VARIABLES; i++) {
+            double x = found[k][i], whole = ik_abs(x) < 0.5 ? 0.0 : (x < 0.0 ? -1.0 : 1.0);
+            if (ik_abs(x - whole) < 1e-7) found[k][i] = whole;
+        }
+    return count;
+}
+
+/* The families through a solution; returns their number. */
+static int ik_families_of(const ik_chain *chain, const ik_frame *pose, const double *solution, ik_family out[IK_VARIABLES])
+{
+    static const double places[5] = { 0.05, -0.4, 1.1, -2.0, 2.9 };
+    double still[IK_VARIABLES][IK_VARIABLES], at[IK_VARIABLES], axes[IK_LINKS][6];
+    int leaders[IK_VARIABLES], count = ik_still(chain, pose, solution, still, leaders), found = 0, k, i;
+    ik_frame tip;
+    for (k = 0; k < count; k++) {
+        ik_family family;
+        family.leader = leaders[k];
+        family.is_line = 1;
+        family.interval[0] = -3.141592653589793;
+        family.interval[1] = 3.141592653589793;
+        for (i = 0; i < IK_VARIABLES; i++) {
+            family.direction[i] = still[k][i];
+            if (ik_slides[i] && (still[k][i] < 0.0 || still[k][i] > 0.0)) family.is_line = 0;
+        }
+        for (i = 0; i < 5; i++) {
+            ik_along(solution, still[k], places[i], at);
+            ik_reach(chain, at, &tip, axes);
+            if (!(ik_distance(&tip, pose) < 1e-9)) family.is_line = 0;
+        }
+        for (i = 0; i < 2 && !family.is_line; i++) {
+            ik_along(solution, still[k], 0.0, at);
+            family.interval[i] = ik_follow(chain, pose, &family, at, family.interval[i], 1e-3);
+        }
+        if (family.is_line || family.interval[1] - family.interval[0] > 0.05) out[found++] = family;
+    }
+    return found;
+}
+
+/* Brings values from the solution to the member at t; says whether there is one. */
+static int ik_member_of(const ik_chain *chain, const ik_frame *pose, const ik_family *family, double values[IK_VARIABLES], double t)
+{
+    const double low = family->interval[0], high = family->interval[1];
+    /* Rounding at an end is not outside. */
+    if (!(low - 1e-9 <= t && t <= high + 1e-9)) return 0;
+    if (t < low) t = low;
+    if (t > high) t = high;
+    if (family->is_line) {
+        ik_along(values, family->direction, t, values);
+        return 1;
+    }
+    return !(ik_abs(ik_follow(chain, pose, family, values, t, 0.5e-3)) < ik_abs(t));
 }
