@@ -1,6 +1,7 @@
 //! `robotc ik`: inverse kinematics of one chain, without any specification.
 
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
@@ -204,7 +205,7 @@ fn compile_within(chain: &SerialChain, options: &Options, seconds: f64) -> Resul
     }
     let (send, receive) = std::sync::mpsc::channel();
     let work = (chain.clone(), options.clone());
-    std::thread::spawn(move || {
+    let worker = std::thread::spawn(move || {
         // Whoever asked may not wait any more.
         let watch = |line: &str| drop(send.send(News::Tried(line.into())));
         let result = compile_watched(&work.0, &work.1, &watch);
@@ -217,7 +218,14 @@ fn compile_within(chain: &SerialChain, options: &Options, seconds: f64) -> Resul
         match receive.recv_timeout(budget.saturating_sub(start.elapsed())) {
             Ok(News::Tried(line)) => trace.push(line),
             Ok(News::Done(result)) => return *result,
-            Err(_) => break,
+            Err(RecvTimeoutError::Timeout) => break,
+            // It ended without an answer: it broke, and so does this one.
+            Err(RecvTimeoutError::Disconnected) => {
+                if let Err(panic) = worker.join() {
+                    std::panic::resume_unwind(panic);
+                }
+                break;
+            }
         }
     }
     // Where unknowns are found one by one, what could not be is known.

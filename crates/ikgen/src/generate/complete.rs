@@ -22,9 +22,10 @@ pub(super) fn completions(problem: &Problem) -> Vec<Problem> {
     let side = side.normalize();
     let third = last.direction.cross(&side).normalize();
     let on_axis = foot(&last, &before.point);
-    let off_axis = on_axis + (side * 0.31 + third * 0.17 + last.direction * 0.23);
+    // Lengths that no arm has: with one of its own the added centre could fold onto an axis, and its turn would be lost.
+    let off_axis = on_axis + (side * 0.31271 + third * 0.17393 + last.direction * 0.23659);
     let mut found = Vec::new();
-    for point in [on_axis, on_axis + last.direction * 0.29, off_axis] {
+    for point in [on_axis, on_axis + last.direction * 0.29137, off_axis] {
         for (first, second) in [(side, third), (third, side)] {
             let add = |direction: Vector3<f64>| Axis {
                 direction,

@@ -7,7 +7,7 @@ use crate::jacobian::{jacobian, jacobian_determinant};
 use crate::vectors::random;
 
 /// Choices of free variables, best first: none for up to six variables that all matter; of seven each one that leaves a
-/// chain that moves well, farthest from the base first; no choice beyond seven.
+/// chain that moves well, farthest from the base first; of more as many as are too many, likewise. No choice beyond twelve.
 ///
 /// A chain of up to six variables that has more of them than ways to move (several slides along one direction) gets those
 /// given, from the tip, without which it moves as before.
@@ -34,6 +34,7 @@ pub(super) fn choices(chain: &SerialChain) -> Vec<Vec<usize>> {
             good.extend(poor.into_iter().filter(|v| score[*v] > 1e-6 * best));
             good.into_iter().map(|v| vec![v]).collect()
         }
+        8..=12 => choices_beside(chain, chain.variables.len(), &[]),
         _ => Vec::new(),
     }
 }
@@ -73,6 +74,9 @@ pub(super) fn freedom(chain: &SerialChain, without: &[usize]) -> usize {
     let mut rng = Seed::new(0).split("ikgen freedom").rng();
     let columns = jacobian(chain, &random(chain, &mut rng));
     let left: Vec<usize> = (0..columns.len()).filter(|v| !without.contains(v)).collect();
+    if left.is_empty() {
+        return 0;
+    }
     nalgebra::DMatrix::from_fn(6, left.len(), |i, j| columns[left[j]][i]).rank(1e-3)
 }
 

@@ -2,9 +2,10 @@
 
 use robotc_core::Seed;
 use robotc_core::ik::{IkSolutions, InverseKinematics};
+use robotc_core::model::ChainVariable;
 use robotc_ikgen::report::{ProofOptions, poses, prove};
 use robotc_ikgen::run::Batch;
-use robotc_ikgen::{Options, Solver, check, compile};
+use robotc_ikgen::{Compiled, Options, Solver, check, compile};
 
 use crate::arms;
 
@@ -76,6 +77,56 @@ fn the_caller_chooses_the_free_joint() {
     assert_eq!(compiled.free, [2]);
     let nonsense = Options { free: Some(vec![9]), ..Options::default() };
     assert!(compile(&arms::iiwa(), &nonsense).is_err());
+}
+
+#[test]
+fn a_single_joint_is_solved() {
+    let chain = arms::chain("knuckle", &[([0.0, 1.0, 0.0], [0.02, 0.0, 0.05])], [0.06, 0.0, 0.09]);
+    solved_everywhere(&compile(&chain, &Options::default()).unwrap());
+}
+
+#[test]
+fn an_arm_of_four_joints_may_fold_onto_its_shoulder() {
+    let up = [0.0, 0.0, 1.0];
+    let across = [0.0, 1.0, 0.0];
+    let joints = [
+        (up, [0.0, 0.0, 0.157]),
+        (across, [0.0, 0.0016, 0.2755]),
+        (across, [0.0, 0.0, 0.5655]),
+        (up, [0.0, -0.007, 0.6886]),
+    ];
+    solved_everywhere(
+        &compile(&arms::chain("micro", &joints, [0.0, -0.007, 0.6886]), &Options::default()).unwrap(),
+    );
+}
+
+#[test]
+fn of_many_joints_those_to_give_are_chosen() {
+    let mut rail = arms::panda();
+    let mut first = arms::panda().joints[0].clone();
+    first.name = "rail".into();
+    first.motion = robotc_core::model::ChainMotion::Prismatic;
+    first.axis = nalgebra::Vector3::y_axis();
+    first.previous_from_joint = robotc_core::Pose::identity();
+    for joint in &mut rail.joints {
+        joint.variable += 1;
+    }
+    let variable =
+        ChainVariable { name: "rail".into(), lower: -1.0, upper: 1.0, ..rail.variables[0].clone() };
+    rail.joints.insert(0, first);
+    rail.variables.insert(0, variable);
+    let compiled = compile(&rail, &Options::default()).unwrap();
+    assert_eq!(compiled.free.len(), 2);
+    solved_everywhere(&compiled);
+}
+
+/// Every pose of every set has solutions, and none is wrong.
+fn solved_everywhere(compiled: &Compiled) {
+    let report = prove(compiled, 0.0, &ProofOptions { poses: 300, seed: 5 }, &|| 0.0);
+    assert!(report.emitted, "{}", report.reason);
+    for set in &report.sets {
+        assert_eq!((set.solved, set.wrong), (set.poses, 0), "{}: {set:?}", report.class);
+    }
 }
 
 #[test]

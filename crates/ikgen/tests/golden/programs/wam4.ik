@@ -7,16 +7,16 @@ slack 0.0
 {
   # the place of the wrist centre
   # axes meet: the distance from their common point does not depend on the turn of the second
-  let t0 = r22 * 0.3 - (r02 * px + r12 * py + r22 * pz) - 0.355
-  let t1 = 0.3 * r21 - (px * r01 + py * r11 + pz * r21) - 0.23
-  let t2 = 1.15 + (px * r00 + py * r10 + pz * r20 - 0.3 * r20) - 0.68
-  circle(-0.15909999999999994, -0.3563, t0 * t0 + t1 * t1 + t2 * t2 - 0.48242500000000005) -> c4 s4 {
-    let t5 = 0.16999999999999993 + -0.55 * c4 + -0.045 * s4
-    let t6 = -0.31 + c4 * -0.045 + s4 * 0.55
+  let t0 = r22 * 0.3 - (r02 * px + r12 * py + r22 * pz) - 0.35771
+  let t1 = 0.3 * r21 - (px * r01 + py * r11 + pz * r21) - 0.23659
+  let t2 = 1.15 + (px * r00 + py * r10 + pz * r20 - 0.3 * r20) - 0.67607
+  circle(-0.16317910000000005, -0.35963470000000003, t0 * t0 + t1 * t1 + t2 * t2 - 0.48853901710000003) -> c4 s4 {
+    let t5 = 0.17393000000000003 + -0.55 * c4 + -0.045 * s4
+    let t6 = -0.31271 + c4 * -0.045 + s4 * 0.55
     let t7 = t0 * t6
     let t8 = t1 * t6
-    circle(t5, 0.23, t2) -> c5 s5 {
-      let t11 = -0.23 * c5 + t5 * s5
+    circle(t5, 0.23659, t2) -> c5 s5 {
+      let t11 = -0.23659 * c5 + t5 * s5
       let t12 = r20 * c5
       let t13 = r20 * s5
       let t14 = r00 * c5
