@@ -225,7 +225,9 @@ impl Shapes {
     pub fn of(elements: &[Geometry]) -> Self {
         let plain = |element: &Geometry| {
             let mut element = Geometry { colour: None, ..element.clone() };
-            if let Shape::Mesh { uri, .. } = &mut element.shape {
+            if let Shape::Mesh { uri, .. } | Shape::Cloud { uri, .. } | Shape::HeightField { uri, .. } =
+                &mut element.shape
+            {
                 uri.clear();
             }
             element
@@ -258,6 +260,17 @@ impl Canonical for Geometry {
             Shape::Capsule { radius, length } => out.add("capsule").add(&(*radius, *length)),
             Shape::Sphere { radius } => out.add("sphere").add(radius),
             Shape::Mesh { mesh, .. } => out.add("mesh").add(&**mesh),
+            Shape::Cloud { cloud, .. } => {
+                let points = cloud.points().iter().flat_map(|p| [p.x, p.y, p.z]);
+                out.add("cloud").add(&cloud.radius()).numbers(points)
+            }
+            Shape::HeightField { field, .. } => {
+                let (spacing, floor) = (field.spacing(), field.floor());
+                out.add("height field").add(&(field.columns() as u64)).add(&spacing).add(&floor);
+                let known: Vec<u8> = field.heights().iter().map(|h| u8::from(!h.is_nan())).collect();
+                out.bytes(&known);
+                out.numbers(field.heights().iter().map(|h| if h.is_nan() { 0.0 } else { *h }))
+            }
         };
     }
 }

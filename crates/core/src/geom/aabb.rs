@@ -71,6 +71,11 @@ impl Aabb {
         (self.low - point).sup(&(point - self.high)).sup(&Vector3::zeros()).norm()
     }
 
+    /// Distance between the boxes; zero when they share a point.
+    pub fn distance_between(&self, other: &Self) -> f64 {
+        (self.low - other.high).sup(&(other.low - self.high)).sup(&Vector3::zeros()).norm()
+    }
+
     /// The interval of `t` in which `origin + t * direction` is inside, cut to `range`; `None` when empty.
     ///
     /// `inverse` holds the reciprocals of the direction's components; infinities are fine.

@@ -7,10 +7,31 @@ use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 
 use super::ConvexPart;
 
-/// Two parts in the frame of the first.
-pub(super) struct Pair<'a> {
+/// What the distance is asked of: a compact convex set.
+pub(super) trait Convex {
+    /// The point farthest along `direction`, to within rounding.
+    fn farthest(&self, direction: &Vector3<f64>) -> Point3<f64>;
+
+    /// Some point of it, as central as is easily known.
+    fn middle(&self) -> Point3<f64>;
+}
+
+impl Convex for ConvexPart {
+    #[inline]
+    fn farthest(&self, direction: &Vector3<f64>) -> Point3<f64> {
+        *self.support(direction)
+    }
+
+    #[inline]
+    fn middle(&self) -> Point3<f64> {
+        self.bounding_sphere().0
+    }
+}
+
+/// Two convex sets in the frame of the first.
+pub(super) struct Pair<'a, B = ConvexPart> {
     a: &'a ConvexPart,
-    b: &'a ConvexPart,
+    b: &'a B,
     a_from_b: Matrix3<f64>,
     b_origin_in_a: Vector3<f64>,
 }
@@ -56,9 +77,9 @@ const FLAT: f64 = 1e-10;
 /// More rounds than ever needed; then the answer is "near".
 const MAX_ROUNDS: usize = 100;
 
-impl<'a> Pair<'a> {
-    /// Parts `a` and `b`, with `a_from_b` between their frames.
-    pub(super) fn new(a: &'a ConvexPart, b: &'a ConvexPart, a_from_b: &Isometry3<f64>) -> Self {
+impl<'a, B: Convex> Pair<'a, B> {
+    /// Sets `a` and `b`, with `a_from_b` between their frames.
+    pub(super) fn new(a: &'a ConvexPart, b: &'a B, a_from_b: &Isometry3<f64>) -> Self {
         let rotation = *a_from_b.rotation.to_rotation_matrix().matrix();
         Self::with_matrix(a, b, rotation, a_from_b.translation.vector)
     }
@@ -66,7 +87,7 @@ impl<'a> Pair<'a> {
     /// The same with the rotation as a matrix.
     pub(super) fn with_matrix(
         a: &'a ConvexPart,
-        b: &'a ConvexPart,
+        b: &'a B,
         a_from_b: Matrix3<f64>,
         b_origin_in_a: Vector3<f64>,
     ) -> Self {
@@ -74,17 +95,19 @@ impl<'a> Pair<'a> {
     }
 
     fn support(&self, direction: &Vector3<f64>) -> Corner {
-        let on_a = *self.a.support(direction);
+        let on_a = self.a.farthest(direction);
         let towards_a = -self.a_from_b.tr_mul(direction);
-        let on_b = Point3::from(self.a_from_b * self.b.support(&towards_a).coords + self.b_origin_in_a);
+        let on_b = Point3::from(self.a_from_b * self.b.farthest(&towards_a).coords + self.b_origin_in_a);
         Corner { w: on_a - on_b, on_a, on_b }
     }
 
-    /// The gap between the parts, as far as asked.
+    fn between(&self) -> Vector3<f64> {
+        self.a_from_b * self.b.middle().coords + self.b_origin_in_a - self.a.middle().coords
+    }
+
+    /// The gap between the two, as far as asked.
     pub(super) fn gap(&self, limit: f64, ask: Ask) -> Gap {
-        let (centre_a, _) = self.a.bounding_sphere();
-        let (centre_b, _) = self.b.bounding_sphere();
-        let between = self.a_from_b * centre_b.coords + self.b_origin_in_a - centre_a.coords;
+        let between = self.between();
         let start = if between.norm_squared() > 0.0 { between } else { Vector3::x() };
         let mut simplex = Simplex::new(self.support(&start));
         let mut v = simplex.corners[0].w;
@@ -119,9 +142,7 @@ impl<'a> Pair<'a> {
     /// A unit direction from a to b, in the frame of a, with the gap along it: at least `1 - relative` times the distance.
     /// `None` when the parts overlap or are too near to tell.
     pub(super) fn separation(&self, relative: f64) -> Option<(Vector3<f64>, f64)> {
-        let (centre_a, _) = self.a.bounding_sphere();
-        let (centre_b, _) = self.b.bounding_sphere();
-        let between = self.a_from_b * centre_b.coords + self.b_origin_in_a - centre_a.coords;
+        let between = self.between();
         let start = if between.norm_squared() > 0.0 { between } else { Vector3::x() };
         let mut simplex = Simplex::new(self.support(&start));
         let mut v = simplex.corners[0].w;

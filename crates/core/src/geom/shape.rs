@@ -6,7 +6,8 @@ use super::{ConvexParts, DecomposeOptions, HullError};
 use super::{box_part, capsule_part, cylinder_part, decompose, sphere_part};
 use crate::model::{Geometry, Shape};
 
-/// Convex parts that cover a shape, in the shape's own frame: one for a primitive, as many as needed for a mesh.
+/// Convex parts that cover a shape, in the shape's own frame: one for a primitive, as many as needed for a mesh, none
+/// for what is a [`Pile`](super::Pile).
 ///
 /// Fails when a mesh has no vertex or a coordinate that is not a finite number.
 pub fn parts_of_shape(shape: &Shape, options: &DecomposeOptions) -> Result<ConvexParts, HullError> {
@@ -16,6 +17,7 @@ pub fn parts_of_shape(shape: &Shape, options: &DecomposeOptions) -> Result<Conve
         Shape::Capsule { radius, length } => ConvexParts::new(vec![capsule_part(*radius, *length)]),
         Shape::Sphere { radius } => ConvexParts::new(vec![sphere_part(*radius)]),
         Shape::Mesh { mesh, .. } => decompose(mesh, options)?,
+        Shape::Cloud { .. } | Shape::HeightField { .. } => ConvexParts::default(),
     })
 }
 

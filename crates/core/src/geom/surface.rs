@@ -5,6 +5,9 @@ use nalgebra::Vector3;
 use super::{box_part, capsule_part, cylinder_part, sphere_part};
 use crate::model::{Geometry, Shape, TriMesh};
 
+/// Points of a cloud and samples of a height field of which a surface is made, at most.
+pub const MOST_SHOWN: usize = 10_000;
+
 /// All elements as one mesh in the frame they are given in, in order. Round shapes become the polytopes around them.
 pub fn surface(elements: &[Geometry]) -> TriMesh {
     let mut all = TriMesh::default();
@@ -15,6 +18,8 @@ pub fn surface(elements: &[Geometry]) -> TriMesh {
             Shape::Capsule { radius, length } => capsule_part(*radius, *length).mesh(),
             Shape::Sphere { radius } => sphere_part(*radius).mesh(),
             Shape::Mesh { mesh, .. } => mesh.as_ref().clone(),
+            Shape::Cloud { cloud, .. } => cloud.mesh(MOST_SHOWN),
+            Shape::HeightField { field, .. } => field.mesh(MOST_SHOWN),
         };
         all.append(&mesh.transformed(&element.origin.pose()));
     }

@@ -6,6 +6,7 @@ use nalgebra::{Translation3, Unit, UnitQuaternion, Vector3};
 
 use super::TriMesh;
 use crate::Pose;
+use crate::geom::{HeightField, PointCloud};
 use crate::ids::{DofIdx, JointIdx, LinkIdx};
 
 /// A rigid transform as a description file writes it: translation, then fixed-axis roll, pitch, yaw.
@@ -62,6 +63,20 @@ pub enum Shape {
         /// The triangles, shared by all that refer to the same file and scale.
         mesh: Arc<TriMesh>,
         /// The reference as written in the description.
+        uri: String,
+    },
+    /// Balls about measured points; for obstacles only.
+    Cloud {
+        /// The points, shared by all that refer to the same file.
+        cloud: Arc<PointCloud>,
+        /// The reference as written, or empty.
+        uri: String,
+    },
+    /// Measured heights on a grid, solid down to a floor; for obstacles only. Its origin is the first sample.
+    HeightField {
+        /// The heights, shared by all that refer to the same file.
+        field: Arc<HeightField>,
+        /// The reference as written, or empty.
         uri: String,
     },
 }

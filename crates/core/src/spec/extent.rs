@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 
 use crate::Pose;
-use crate::geom::Aabb;
+use crate::geom::{Aabb, Pile};
 use crate::model::{Geometry, Shape};
 
 /// The smallest axis-aligned box, in a frame, around shapes whose common frame stands at `frame_from_shapes`; `None`
@@ -20,6 +20,9 @@ fn of_shape(geometry: &Geometry, frame_from_parent: &Pose) -> Option<Aabb> {
         Shape::Mesh { mesh, .. } => {
             let points: Vec<Point3<f64>> = mesh.vertices.iter().map(|v| frame_from_shape * v).collect();
             return Aabb::of_points(&points);
+        }
+        Shape::Cloud { .. } | Shape::HeightField { .. } => {
+            return Pile::of_shape(&geometry.shape).map(|pile| pile.bounds().transformed(&frame_from_shape));
         }
         Shape::Box { size } => rotation.abs() * (Vector3::from(*size) / 2.0),
         Shape::Sphere { radius } => Vector3::repeat(*radius),

@@ -180,6 +180,7 @@ mod build {
             }
             Shape::Capsule { radius, length } => ball(*radius, 0.5 * length).collect(),
             Shape::Sphere { radius } => ball(*radius, 0.0).collect(),
+            Shape::Cloud { .. } | Shape::HeightField { .. } => Vec::new(),
             Shape::Mesh { mesh, .. } => {
                 let mut points = mesh.vertices.clone();
                 for face in 0..mesh.faces.len() {

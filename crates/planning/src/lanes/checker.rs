@@ -11,7 +11,7 @@ use super::kernel::{Around, Close, Line, MOST_LANES, Motion, Scratch, look};
 use super::mechanism::{Body, Group, LaneRobot, number_of};
 use super::obstacle::Obstacle;
 use crate::edge::{Blocked, EdgeChecker, Obstruction, Patience};
-use crate::scene::{Rules, Scene};
+use crate::scene::{PlacedPile, Rules, Scene};
 use crate::space::Space;
 
 /// Checks motions of a robot among the bodies of a scene, several configurations at a time.
@@ -116,7 +116,7 @@ impl<'a> LaneChecker<'a> {
         let mut obstacles = Vec::new();
         let mut owners = Vec::new();
         let root_from_world = scene.world_from_robot().inverse();
-        for (body, root_from_body, geometry, parts) in scene.solids() {
+        for (body, root_from_body, geometry) in scene.solids() {
             if robot.held == Some(body) {
                 continue;
             }
@@ -125,8 +125,13 @@ impl<'a> LaneChecker<'a> {
                 .iter()
                 .map(|g| Obstacle::of_shape(&g.shape, &(root_from_body * g.origin.pose())))
                 .collect();
-            let solids = primitives
-                .unwrap_or_else(|| parts.map(|part| Obstacle::of_part(part, &root_from_body)).collect());
+            let solids = primitives.unwrap_or_else(|| {
+                let (parts, piles) = scene.made_of(body);
+                let parts = parts.map(|part| Obstacle::of_part(part, &root_from_body));
+                let placed =
+                    |p: &PlacedPile| Obstacle::of_pile(&p.pile, &(root_from_body * p.body_from_pile));
+                parts.chain(piles.iter().map(placed)).collect()
+            });
             owners.extend(solids.iter().map(|_| body));
             obstacles.extend(solids);
         }

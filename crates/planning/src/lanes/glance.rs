@@ -7,10 +7,11 @@
 use pulp::Simd;
 
 use super::frames::Frames;
-use super::kernel::{Close, MOST_LANES, Motion, Scratch, children};
+use super::kernel::{COARSE, Close, MOST_LANES, Motion, Scratch, children};
 use super::lane::{Lanes, Mask, dot, minus};
 use super::mechanism::LaneRobot;
 use super::obstacle::Obstacle;
+use super::pile::Question;
 
 /// What a first look finds.
 pub(super) enum Glance {
@@ -116,7 +117,8 @@ impl<S: Simd> Eye<'_, S> {
                 if group.bodies.len() > 1 {
                     let centre = self.frames.centre(group.ball, group.frame);
                     let outer = robot.spheres[group.ball].outer + slack;
-                    let least = solid.squared_distance(self.simd, &centre).0;
+                    let question = Question { limit: self.splat(outer), coarse: COARSE * outer };
+                    let least = solid.squared_distance(self.simd, &centre, question).0;
                     if !least.less_equal(self.splat(outer * outer)).any() {
                         continue;
                     }
@@ -127,8 +129,11 @@ impl<S: Simd> Eye<'_, S> {
                     while at < body.spheres.end {
                         let sphere = &robot.spheres[at];
                         let centre = self.frames.centre(at, body.frame);
-                        let (least, most) = solid.squared_distance(self.simd, &centre);
                         let outer = sphere.outer + slack;
+                        let leaf = sphere.next as usize == at + 1;
+                        let coarse = if leaf { 0.0 } else { COARSE * sphere.outer };
+                        let question = Question { limit: self.splat(outer), coarse };
+                        let (least, most) = solid.squared_distance(self.simd, &centre, question);
                         let maybe = least.less_equal(self.splat(outer * outer));
                         if !maybe.any() {
                             at = sphere.next as usize;
@@ -140,7 +145,7 @@ impl<S: Simd> Eye<'_, S> {
                             return Some(Close::Obstacle { body: i as u32, obstacle });
                         }
                         at += 1;
-                        if sphere.next as usize == at {
+                        if leaf {
                             self.open = self.open.or(maybe);
                         }
                     }

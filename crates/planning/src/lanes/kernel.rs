@@ -11,6 +11,7 @@ use super::glance::Standing;
 use super::lane::{Lanes, Mask, Vector, cross, dot, minus, plus, times};
 use super::mechanism::{LaneRobot, Sphere};
 use super::obstacle::Obstacle;
+use super::pile::Question;
 
 /// What a motion looks like to the kernel: numbers that are the same in all lanes.
 #[derive(Debug, Default)]
@@ -81,6 +82,9 @@ impl Default for Scratch {
         }
     }
 }
+
+/// Parts of a pile that are smaller than this fraction of a sphere are not told apart, unless the sphere is a leaf.
+pub(super) const COARSE: f32 = 0.25;
 
 /// The most lanes of any processor.
 pub(super) const MOST_LANES: usize = 16;
@@ -228,8 +232,10 @@ impl<S: Simd> Kernel<'_, S> {
                     let sphere = &robot.spheres[at];
                     let leaf = sphere.next as usize == at + 1;
                     let centre = self.frames.centre(at, body.frame);
-                    let (least, most) = solid.squared_distance(self.simd, &centre);
                     let outer = reach + self.splat(sphere.outer);
+                    let coarse = if leaf { 0.0 } else { COARSE * sphere.outer };
+                    let question = Question { limit: outer, coarse };
+                    let (least, most) = solid.squared_distance(self.simd, &centre, question);
                     let maybe = least.less_equal(outer * outer);
                     if !maybe.any() {
                         at = sphere.next as usize;

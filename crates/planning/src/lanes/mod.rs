@@ -16,6 +16,7 @@ mod kernel;
 mod lane;
 mod mechanism;
 mod obstacle;
+mod pile;
 mod settle;
 #[cfg(test)]
 mod tests;

@@ -3,10 +3,11 @@
 use nalgebra::Vector3;
 use pulp::Simd;
 use robotc_core::Pose;
-use robotc_core::geom::ConvexPart;
+use robotc_core::geom::{ConvexPart, Pile};
 use robotc_core::model::Shape;
 
 use super::lane::{Lanes, Vector, minus};
+use super::pile::{self, Question};
 
 /// A solid with its pose in the root frame of the robot.
 #[derive(Debug, Clone)]
@@ -34,6 +35,8 @@ enum Solid {
     Capsule(f32, f32),
     /// Normals and offsets, about the middle.
     Planes(Vec<[f32; 4]>),
+    /// In its own frame, at the middle.
+    Pile(Pile),
 }
 
 /// Tilts that move no point of a solid by more than rounding does, radians.
@@ -45,7 +48,7 @@ const CYLINDER_PAD: f64 = 0.02;
 const CAPSULE_PAD: f64 = 0.15;
 
 impl Obstacle {
-    /// A primitive; `None` for a mesh.
+    /// A primitive or a pile; `None` for a mesh.
     pub(super) fn of_shape(shape: &Shape, root_from_shape: &Pose) -> Option<Self> {
         let half = |x: f64| (0.5 * x) as f32;
         let (solid, pad, radius) = match *shape {
@@ -60,6 +63,9 @@ impl Obstacle {
                 (solid, CAPSULE_PAD * radius, radius + 0.5 * length)
             }
             Shape::Mesh { .. } => return None,
+            Shape::Cloud { .. } | Shape::HeightField { .. } => {
+                return Pile::of_shape(shape).map(|pile| Self::of_pile(&pile, root_from_shape));
+            }
         };
         Some(Self::new(solid, root_from_shape, pad, radius))
     }
@@ -73,6 +79,19 @@ impl Obstacle {
         };
         let planes = Solid::Planes(part.planes().iter().map(plane).collect());
         Self::new(planes, &(root_from_part * nalgebra::Translation3::from(centre.coords)), 0.0, radius)
+    }
+
+    /// A cloud or a height field.
+    pub(super) fn of_pile(pile: &Pile, root_from_pile: &Pose) -> Self {
+        let bounds = pile.bounds();
+        let farthest = bounds.low.coords.norm().max(bounds.high.coords.norm()) + bounds.diagonal();
+        let from_root = root_from_pile.translation.vector.norm();
+        // Its points, and where it is, are rounded to single precision.
+        let pad = 2e-6 * (1.0 + farthest + from_root);
+        let radius = 0.5 * bounds.diagonal();
+        let mut obstacle = Self::new(Solid::Pile(pile.clone()), root_from_pile, pad, radius);
+        obstacle.ball.0 = (root_from_pile * bounds.centre()).coords.into();
+        obstacle
     }
 
     fn new(solid: Solid, root_from_solid: &Pose, pad: f64, radius: f64) -> Self {
@@ -91,9 +110,14 @@ impl Obstacle {
         }
     }
 
-    /// Squares of a lower and of an upper bound of the distance to `point`, in the root frame.
+    /// Squares of a lower and of an upper bound of the distance to `point`, in the root frame, as far as the question asks for them.
     #[inline(always)]
-    pub(super) fn squared_distance<S: Simd>(&self, simd: S, point: &Vector<S>) -> (Lanes<S>, Lanes<S>) {
+    pub(super) fn squared_distance<S: Simd>(
+        &self,
+        simd: S,
+        point: &Vector<S>,
+        question: Question<S>,
+    ) -> (Lanes<S>, Lanes<S>) {
         let splat = |x: f32| Lanes::splat(simd, x);
         let zero = splat(0.0);
         let [mx, my, mz] = self.middle;
@@ -132,6 +156,12 @@ impl Obstacle {
                 let gap = ((x * x + y * y + z * z).sqrt() - splat(*radius)).max(zero);
                 let squared = gap * gap;
                 (squared, squared)
+            }
+            Solid::Pile(pile) => {
+                let (least, most) = pile::squared_distance(simd, pile, &[x, y, z], question);
+                // Rounding proves no contact, either.
+                let most = most.sqrt() + splat(self.pad);
+                (least, most * most)
             }
             Solid::Planes(planes) => {
                 let mut height = splat(f32::NEG_INFINITY);

@@ -7,7 +7,7 @@
 
 use nalgebra::Vector3;
 use robotc_core::Pose;
-use robotc_core::geom::{ConvexPart, contact, distance, separation};
+use robotc_core::geom::{ConvexPart, Pile, contact, distance, separation};
 
 use super::checker::{LaneChecker, LaneMemory};
 use super::kernel::Close;
@@ -114,17 +114,24 @@ impl LaneChecker<'_> {
                 let keeps = keeps.map_or(0.0, |(_, room)| f64::from(*room));
                 let bend = f64::from(motion.bends[body]);
                 let (root_from_body, parts) = link(body);
+                let (own, piles) = scene.made_of(owner);
+                let own: Vec<&ConvexPart> = own.collect();
                 for part in parts {
                     let (centre, radius) = part.bounding_sphere();
-                    for other in scene.body_parts(owner) {
+                    let twist = || robot.twist(body, &(root_from_body * centre), difference, frames);
+                    let pace = Pace { speed, radius, bend, twist: &twist };
+                    for placed in piles {
+                        let root_from_pile = root_from_other * placed.body_from_pile;
+                        let pile = PileBeside { part, root_from_part: &root_from_body, pile: &placed.pile };
+                        pile.narrow(&mut all, &root_from_pile, keeps, &pace, enough);
+                    }
+                    for &other in &own {
                         let pair = PartPair {
                             a: part,
                             root_from_a: &root_from_body,
                             b: other,
                             root_from_b: &root_from_other,
                         };
-                        let twist = || robot.twist(body, &(root_from_body * centre), difference, frames);
-                        let pace = Pace { speed, radius, bend, twist: &twist };
                         all.narrow(pair.room(keeps, &pace, &all, enough, hint(directions, &mut number)));
                     }
                 }
@@ -263,6 +270,58 @@ impl PartPair<'_> {
             false => -contact(a, root_from_a, b, root_from_b, 0.0).map_or(0.0, |found| found.depth) - keeps,
         };
         pace.room(gap, None)
+    }
+}
+
+/// A part that is where it is, near a pile.
+struct PileBeside<'p> {
+    part: &'p ConvexPart,
+    root_from_part: &'p Pose,
+    pile: &'p Pile,
+}
+
+impl PileBeside<'_> {
+    /// Narrows the room of others to how long the two stay `keeps` metres apart. What covers a node counts for all that is in it where
+    /// that lasts for long `enough`.
+    fn narrow(&self, all: &mut Room, root_from_pile: &Pose, keeps: f64, pace: &Pace<'_>, enough: f64) {
+        let Self { part, root_from_part, pile } = *self;
+        let part_from_pile = root_from_part.inv_mul(root_from_pile);
+        let pile_from_part = part_from_pile.inverse();
+        let (centre, radius) = part.bounding_sphere();
+        let centre = pile_from_part * centre;
+        let bounds = part.bounds().transformed(&pile_from_part);
+        let mut may_touch = false;
+        pile.walk(&centre, |lump, leaf| {
+            let apart = lump.bound(&bounds, &centre, radius) - keeps.max(0.0);
+            if apart > TOUCH && apart > pace.speed * all.before.max(all.after) {
+                return false;
+            }
+            let found = lump.separation(part, &part_from_pile, RELATIVE);
+            let room = match found.filter(|found| found.gap - keeps.max(0.0) > TOUCH) {
+                Some(found) => {
+                    let direction = root_from_part.rotation * found.direction.into_inner();
+                    pace.room(found.gap - keeps.max(0.0), Some(direction))
+                }
+                None if !leaf => return true,
+                // Now it matters how far exactly.
+                None => pace.room(lump.distance(part, &part_from_pile) - keeps.max(0.0), None),
+            };
+            if !leaf && room.before.min(room.after) <= enough {
+                return true;
+            }
+            // What may be in each other is looked at as a whole.
+            if leaf && keeps < 0.0 && room.before.min(room.after) <= enough {
+                may_touch = true;
+                return false;
+            }
+            all.narrow(room);
+            false
+        });
+        if may_touch {
+            let left = -keeps - pile.depth(part, &part_from_pile);
+            let gap = pile.gap(part, &part_from_pile, -keeps);
+            all.narrow(pace.room(left.max(gap), None));
+        }
     }
 }
 

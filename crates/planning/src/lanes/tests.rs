@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use nalgebra::{Point3, Translation3};
-use robotc_core::geom::{ConvexParts, CoverOptions, DecomposeOptions, SphereCover, parts_of};
+use robotc_core::geom::{
+    ConvexParts, CoverOptions, DecomposeOptions, HeightField, PointCloud, SphereCover, parts_of,
+};
 use robotc_core::ids::Idx;
 use robotc_core::model::{Geometry, Origin, Shape, TriMesh};
 use robotc_core::rng::Rng;
@@ -38,6 +40,22 @@ fn wedge() -> Shape {
 
 fn block() -> Arc<Vec<Geometry>> {
     solid(Shape::Box { size: [0.2, 0.06, 0.04] })
+}
+
+/// Points on a ball and on a wall.
+fn scan(rng: &mut Rng) -> Shape {
+    let on_ball = |rng: &mut Rng| Point3::from(rng.direction().into_inner() * 0.1);
+    let on_wall = |rng: &mut Rng| Point3::new(rng.range(-0.2, 0.2), 0.25, rng.range(-0.2, 0.2));
+    let points = (0..400).map(|i| if i % 2 == 0 { on_ball(rng) } else { on_wall(rng) }).collect();
+    Shape::Cloud { cloud: Arc::new(PointCloud::new(points, 0.01).unwrap()), uri: String::new() }
+}
+
+/// Hills with holes.
+fn ground(rng: &mut Rng) -> Shape {
+    let mut height = || if rng.below(20) == 0 { f64::NAN } else { rng.range(0.0, 0.08) };
+    let heights = (0..12 * 9).map(|_| height()).collect();
+    let field = HeightField::new(12, heights, [0.04, 0.05], Some(-0.05)).unwrap();
+    Shape::HeightField { field: Arc::new(field), uri: String::new() }
 }
 
 type Covers = TypedVec<LinkIdx, Arc<SphereCover>>;
@@ -80,6 +98,11 @@ fn bench(rail: bool, covers: &Covers, rng: &mut Rng) -> Bench {
     let block = block();
     world.add("block", block.clone(), Pose::translation(9.0, 0.0, 0.0));
     bodies.push(Arc::new(parts_of(&block, &options).unwrap()));
+    for (name, shape) in [("scan", scan(rng)), ("ground", ground(rng))] {
+        let at = Translation3::new(rng.range(-0.9, 0.9), rng.range(-0.9, 0.9), rng.range(0.0, 0.8));
+        world.add(name, solid(shape), Pose::from_parts(at, rng.rotation()));
+        bodies.push(Arc::new(ConvexParts::default()));
+    }
     let parts: TypedVec<LinkIdx, Arc<ConvexParts>> =
         model.links().iter().map(|l| Arc::new(parts_of(&l.collisions, &options).unwrap())).collect();
     let links: Vec<LinkIdx> = model.links().indices().collect();

@@ -27,6 +27,7 @@ pub(crate) use along::Along;
 pub use article::ArticleChecker;
 pub use checker::RobotChecker;
 pub use mobile::MobileChecker;
+pub(crate) use shape::PlacedPile;
 use shape::Shape;
 
 use crate::edge::Obstruction;
@@ -108,9 +109,9 @@ impl Scene {
             name: body.name.as_str().into(),
             geometry: body.geometry.clone(),
             shape: Arc::new(if body.enabled {
-                Shape::new(parts)
+                Shape::new(parts, &body.geometry)
             } else {
-                Shape::new(&ConvexParts::default())
+                Shape::new(&ConvexParts::default(), &[])
             }),
             world_from_body: body.world_from_body,
             body_from_world: body.world_from_body.inverse(),
@@ -118,7 +119,7 @@ impl Scene {
         Self {
             kinematics: world.kinematics().clone(),
             world_from_robot: *world.world_from_robot(),
-            links: Arc::new(links.iter().map(|parts| Shape::new(parts)).collect()),
+            links: Arc::new(links.iter().map(|parts| Shape::new(parts, &[])).collect()),
             self_pairs: Arc::new(self_pairs),
             bodies: world.bodies().iter().zip(bodies).map(body).collect(),
             rows: Arc::default(),
@@ -150,25 +151,26 @@ impl Scene {
         self.links[link].parts.iter().map(|part| &part.part)
     }
 
-    /// Convex parts of a body, in its frame.
+    /// Convex parts that cover a body, in its frame.
     pub(crate) fn body_parts(&self, body: BodyIdx) -> impl Iterator<Item = &ConvexPart> {
-        self.bodies[body].shape.parts.iter().map(|part| &part.part)
+        self.bodies[body].shape.cover().map(|part| &part.part)
     }
 
-    /// The convex parts of a body, in its frame.
+    /// What a body is made of, in its frame: convex parts and piles.
+    pub(crate) fn made_of(&self, body: BodyIdx) -> (impl Iterator<Item = &ConvexPart>, &[PlacedPile]) {
+        let shape = &self.bodies[body].shape;
+        (shape.parts.iter().map(|part| &part.part), &shape.piles)
+    }
+
+    /// The convex parts that cover a body, in its frame; of a point cloud or a height field the box around it.
     pub fn parts_of(&self, body: BodyIdx) -> ConvexParts {
         ConvexParts::new(self.body_parts(body).cloned().collect())
     }
 
-    /// Bodies that have a shape: where they are, what they look like, and the convex parts that cover them.
-    pub(crate) fn solids(
-        &self,
-    ) -> impl Iterator<Item = (BodyIdx, Pose, &[Geometry], impl Iterator<Item = &ConvexPart>)> {
+    /// Bodies that have a shape: where they are, and what they look like.
+    pub(crate) fn solids(&self) -> impl Iterator<Item = (BodyIdx, Pose, &[Geometry])> {
         let solid = self.bodies.enumerate().filter(|(_, body)| !body.shape.is_empty());
-        solid.map(|(index, body)| {
-            let parts = body.shape.parts.iter().map(|part| &part.part);
-            (index, body.world_from_body, body.geometry.as_slice(), parts)
-        })
+        solid.map(|(index, body)| (index, body.world_from_body, body.geometry.as_slice()))
     }
 
     /// Moves a body.
@@ -229,10 +231,14 @@ impl Scene {
         let (other, world_from_other) = placed((code & 0xffff) as usize)?;
         let other_from_one = world_from_other.inv_mul(&world_from_one);
         let mut deepest: f64 = 0.0;
-        for a in &one.parts {
+        let one_from_other = other_from_one.inverse();
+        for a in one.cover() {
             for b in &other.parts {
                 let found = contact(&a.part, &other_from_one, &b.part, &Pose::identity(), 0.0);
                 deepest = deepest.max(found.map_or(0.0, |c| c.depth));
+            }
+            for b in &other.piles {
+                deepest = deepest.max(b.pile.depth(&a.part, &b.seen_by(&one_from_other)));
             }
         }
         Some(deepest)
@@ -267,16 +273,21 @@ impl Scene {
         let mut poses = LinkPoses::default();
         self.kinematics.link_poses(q, &mut poses);
         let body = &self.bodies[body];
-        let touches = |link: &LinkIdx| {
-            let body_from_link = body.body_from_world * self.world_from_robot * poses.root_from(*link);
-            let parts = &self.links[*link].parts;
-            parts.iter().any(|part| {
-                let near = |other: &shape::Part| {
-                    within(&part.part, &body_from_link, &other.part, &Pose::identity(), gap)
-                };
-                body.shape.parts.iter().any(near)
-            })
-        };
+        let touches =
+            |link: &LinkIdx| {
+                let body_from_link = body.body_from_world * self.world_from_robot * poses.root_from(*link);
+                let parts = &self.links[*link].parts;
+                parts.iter().any(|part| {
+                    let near = |other: &shape::Part| {
+                        within(&part.part, &body_from_link, &other.part, &Pose::identity(), gap)
+                    };
+                    let link_from_body = || body_from_link.inverse();
+                    body.shape.parts.iter().any(near)
+                        || body.shape.piles.iter().any(|other| {
+                            other.pile.is_within(&part.part, &other.seen_by(&link_from_body()), gap)
+                        })
+                })
+            };
         links.iter().copied().filter(touches).collect()
     }
 
@@ -416,7 +427,8 @@ impl Scene {
             }
             let margin = if depth.is_some() { 0.0 } else { margin };
             let body_from_mover = body.body_from_world * mover.pose;
-            for part in &mover.shape.parts {
+            let mover_from_body = body_from_mover.inverse();
+            for part in mover.shape.cover() {
                 let part_centre = body_from_mover * part.centre;
                 for other in &body.shape.parts {
                     let far = margin + *clearance * pace;
@@ -438,6 +450,22 @@ impl Scene {
                         return Err(touch());
                     }
                     *clearance = clearance.min((gap - margin) / pace);
+                }
+                for other in &body.shape.piles {
+                    let far = margin + *clearance * pace;
+                    if other.bounds.distance_to(&part_centre) - part.radius > far {
+                        continue;
+                    }
+                    let seen = other.seen_by(&mover_from_body);
+                    let gap = other.pile.gap(&part.part, &seen, far + FARTHER);
+                    let touches = match depth {
+                        None => gap <= margin && other.pile.is_within(&part.part, &seen, margin),
+                        Some(depth) => gap == 0.0 && other.pile.depth(&part.part, &seen) > depth,
+                    };
+                    if touches {
+                        return Err(touch());
+                    }
+                    *clearance = clearance.min((gap - margin).max(0.0) / pace);
                 }
             }
         }
@@ -465,6 +493,9 @@ impl Movers {
     }
 }
 
+/// Gaps are looked for this far beyond what matters, metres, so that none is not the same as one of zero.
+const FARTHER: f64 = 1e-6;
+
 /// A shape at one place; the number is for messages.
 struct Placed<'a> {
     shape: &'a Shape,
@@ -479,7 +510,8 @@ fn compare(a: &Placed<'_>, b: &Placed<'_>, pace: f64, clearance: &mut f64) -> Re
         return Ok(());
     }
     let b_from_a = b.pose.inv_mul(&a.pose);
-    for part in &a.shape.parts {
+    let a_from_b = b_from_a.inverse();
+    for part in a.shape.cover() {
         let centre = b_from_a * part.centre;
         for other in &b.shape.parts {
             let far = *clearance * pace;
@@ -489,6 +521,17 @@ fn compare(a: &Placed<'_>, b: &Placed<'_>, pace: f64, clearance: &mut f64) -> Re
                 continue;
             }
             let gap = distance(&part.part, &b_from_a, &other.part, &Pose::identity()).distance;
+            if gap == 0.0 {
+                return Err(Touch(a.number as u16, b.number as u16));
+            }
+            *clearance = clearance.min(gap / pace);
+        }
+        for other in &b.shape.piles {
+            let far = *clearance * pace;
+            if other.bounds.distance_to(&centre) - part.radius > far {
+                continue;
+            }
+            let gap = other.pile.gap(&part.part, &other.seen_by(&a_from_b), far + FARTHER);
             if gap == 0.0 {
                 return Err(Touch(a.number as u16, b.number as u16));
             }

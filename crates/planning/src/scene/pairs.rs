@@ -9,7 +9,7 @@ use robotc_core::ids::Idx;
 use robotc_core::{BodyIdx, DofIdx, LinkIdx, LinkPoses, Pose, TypedVec};
 
 use super::shape::Shape;
-use super::{Grip, Rules, Scene, Touch};
+use super::{FARTHER, Grip, Rules, Scene, Touch};
 use crate::travel::TravelBounds;
 
 /// What has to stay apart in motions of some degrees of freedom.
@@ -201,7 +201,8 @@ fn between(one: &Shape, other: &Shape, other_from_one: &Pose, keeps: Keeps, far:
         return Some(bound);
     }
     let mut room = f64::INFINITY;
-    for part in &one.parts {
+    let one_from_other = other_from_one.inverse();
+    for part in one.cover() {
         let centre = other_from_one * part.centre;
         for against in &other.parts {
             let bound = against.bounds.distance_to(&centre) - part.radius;
@@ -229,6 +230,34 @@ fn between(one: &Shape, other: &Shape, other_from_one: &Pose, keeps: Keeps, far:
                         return None;
                     }
                     depth - deep
+                }
+            };
+            room = room.min(nearer);
+        }
+        for against in &other.piles {
+            let bound = against.bounds.distance_to(&centre) - part.radius;
+            if bound > 0.0 && bound - least > far.max(0.0) {
+                room = room.min(bound - least);
+                continue;
+            }
+            // Nothing that is farther away matters, and a gap of nothing is one.
+            let limit = room.min(far.max(0.0)) + least.max(0.0) + FARTHER;
+            let seen = against.seen_by(&one_from_other);
+            let gap = against.pile.gap(&part.part, &seen, limit);
+            let nearer = match keeps {
+                Keeps::Margin(margin) if gap <= margin => {
+                    if against.pile.is_within(&part.part, &seen, margin) {
+                        return None;
+                    }
+                    0.0
+                }
+                Keeps::Margin(margin) => gap - margin,
+                Keeps::Depth(depth) => {
+                    let deep = against.pile.depth(&part.part, &seen);
+                    if gap == 0.0 && deep > depth {
+                        return None;
+                    }
+                    gap.max(depth - deep)
                 }
             };
             room = room.min(nearer);

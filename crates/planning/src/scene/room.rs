@@ -8,7 +8,7 @@ use super::Scene;
 impl Scene {
     /// Distance, metres, of a point from the nearest body but `beside`, at most `limit`.
     ///
-    /// It is measured to the boxes around convex parts, along the axes of each body: never too large, and zero in
+    /// It is measured to the boxes around convex parts and around lumps of piles, along the axes of each: never too large, and zero in
     /// the corner of a box that its part does not fill.
     pub(crate) fn room_about(&self, point_in_world: &Point3<f64>, beside: BodyIdx, limit: f64) -> f64 {
         let mut room = limit;
@@ -20,6 +20,16 @@ impl Scene {
             if body.shape.bounds.distance_to(&point) < room {
                 let parts = body.shape.parts.iter().map(|part| part.bounds.distance_to(&point));
                 room = parts.fold(room, f64::min);
+                for pile in &body.shape.piles {
+                    pile.pile.walk(&(pile.body_from_pile.inverse() * point), |lump, leaf| {
+                        let gap = lump.bounds().distance_to(&(pile.body_from_pile.inverse() * point));
+                        let nearer = gap < room;
+                        if nearer && leaf {
+                            room = gap;
+                        }
+                        nearer
+                    });
+                }
             }
         }
         room

@@ -1,7 +1,9 @@
-//! Convex parts with the bounds that most comparisons are settled by.
+//! Convex parts and piles with the bounds that most comparisons are settled by.
 
-use nalgebra::Point3;
-use robotc_core::geom::{Aabb, ConvexPart, ConvexParts};
+use nalgebra::{Point3, Vector3};
+use robotc_core::Pose;
+use robotc_core::geom::{Aabb, ConvexPart, ConvexParts, Pile, box_part};
+use robotc_core::model::Geometry;
 
 /// One part with its bounds.
 #[derive(Debug, Clone)]
@@ -13,34 +15,85 @@ pub(super) struct Part {
     pub(super) radius: f64,
 }
 
-/// The parts of one body with bounds of all.
+/// A cloud or a height field where it is in its body.
+#[derive(Debug, Clone)]
+pub(crate) struct PlacedPile {
+    pub(crate) pile: Pile,
+    pub(crate) body_from_pile: Pose,
+    /// In the frame of the body.
+    pub(super) bounds: Aabb,
+}
+
+/// The parts and piles of one body with bounds of all.
 #[derive(Debug, Clone)]
 pub(super) struct Shape {
     pub(super) parts: Vec<Part>,
+    pub(super) piles: Vec<PlacedPile>,
+    /// A box around each pile.
+    boxes: Vec<Part>,
     pub(super) bounds: Aabb,
     pub(super) centre: Point3<f64>,
     pub(super) radius: f64,
 }
 
+impl Part {
+    fn new(part: &ConvexPart) -> Self {
+        let (centre, radius) = part.bounding_sphere();
+        Self { part: part.clone(), bounds: *part.bounds(), centre, radius }
+    }
+}
+
 impl Shape {
-    pub(super) fn new(parts: &ConvexParts) -> Self {
-        let origin = Aabb { low: Point3::origin(), high: Point3::origin() };
-        let bounds = parts.bounds().unwrap_or(origin);
-        let centre = bounds.centre();
-        let radius = parts.points().map(|p| (p - centre).norm()).fold(0.0, f64::max);
-        let part = |part: &ConvexPart| {
-            let (centre, radius) = part.bounding_sphere();
-            Part { part: part.clone(), bounds: *part.bounds(), centre, radius }
+    /// Convex parts, and the piles among some elements.
+    pub(super) fn new(parts: &ConvexParts, elements: &[Geometry]) -> Self {
+        let placed = |(pile, body_from_pile): (Pile, Pose)| {
+            let bounds = pile.bounds().transformed(&body_from_pile);
+            PlacedPile { pile, body_from_pile, bounds }
         };
-        Self { parts: parts.iter().map(part).collect(), bounds, centre, radius }
+        let piles: Vec<PlacedPile> = Pile::all_of(elements).map(placed).collect();
+        let around = |pile: &PlacedPile| {
+            let size = pile.bounds.size().sup(&Vector3::repeat(1e-6));
+            Part::new(&box_part(size).transformed(&Pose::from(pile.bounds.centre().coords)))
+        };
+        let parts: Vec<Part> = parts.iter().map(Part::new).collect();
+        let boxes: Vec<Part> = piles.iter().map(around).collect();
+        let mut shape = Self {
+            parts,
+            piles,
+            boxes,
+            bounds: Aabb { low: Point3::origin(), high: Point3::origin() },
+            centre: Point3::origin(),
+            radius: 0.0,
+        };
+        let bounds = shape.cover().map(|part| part.bounds).reduce(|a, b| a.union(&b));
+        shape.bounds = bounds.unwrap_or(shape.bounds);
+        shape.centre = shape.bounds.centre();
+        shape.radius = shape.points().map(|p| (p - shape.centre).norm()).fold(0.0, f64::max);
+        shape
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.parts.is_empty()
+        self.parts.is_empty() && self.piles.is_empty()
+    }
+
+    /// Convex parts that cover all of it: what counts when it moves. A pile is in its box.
+    pub(super) fn cover(&self) -> impl Iterator<Item = &Part> {
+        self.parts.iter().chain(&self.boxes)
+    }
+
+    fn points(&self) -> impl Iterator<Item = &Point3<f64>> {
+        self.cover().flat_map(|part| part.part.points())
     }
 
     /// Largest distance of a point from the origin of the frame, metres.
     pub(super) fn radius_about_origin(&self) -> f64 {
-        self.parts.iter().flat_map(|p| p.part.points()).map(|p| p.coords.norm()).fold(0.0, f64::max)
+        self.points().map(|p| p.coords.norm()).fold(0.0, f64::max)
+    }
+}
+
+impl PlacedPile {
+    /// The pile as a part sees it that sees the body like this.
+    pub(crate) fn seen_by(&self, part_from_body: &Pose) -> Pose {
+        part_from_body * self.body_from_pile
     }
 }

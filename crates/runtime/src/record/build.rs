@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::Point3;
+use robotc_core::geom::MOST_SHOWN;
 use robotc_core::ids::{LinkIdx, TypedVec};
 use robotc_core::model::{Geometry, LinkPoses, RobotModel, Shape};
 use robotc_core::{Pose, Task};
@@ -181,6 +182,8 @@ impl Recording {
             Shape::Cylinder { radius, length } => self.add_surface(tessellate::cylinder(*radius, *length)),
             Shape::Capsule { radius, length } => self.add_surface(tessellate::capsule(*radius, *length)),
             Shape::Sphere { radius } => self.add_surface(tessellate::sphere(*radius)),
+            Shape::Cloud { cloud, .. } => self.add_surface(Surface::smoothed(&cloud.mesh(MOST_SHOWN))),
+            Shape::HeightField { field, .. } => self.add_surface(Surface::smoothed(&field.mesh(MOST_SHOWN))),
         };
         Part { surface, material, node_from_part: geometry.origin.pose() }
     }
