@@ -9,37 +9,31 @@
 use robotc_core::Pose;
 use robotc_core::ik::VariableRange;
 
+use super::determinant::Equations;
 use super::two_angles::TwoAngles;
-use crate::kernel::elimination::{Six, View, at, sides, without_right};
 use crate::kernel::math::{angle_of, cos_sin};
 use crate::kernel::six::{ORDERS, Order, six, waves_of};
-use crate::kernel::vector::{Line, Motion, dot, minus, plus, times};
+use crate::kernel::vector::{Line, Motion, plus, times};
 use crate::kernel::waves::MAX_DEGREE;
 use crate::run::{Solver, TrueChain, frame};
-
-/// Highest wave of the determinant in the given joint: twelve rows, each linear.
-const GIVEN_DEGREE: usize = 12;
-
-/// Where sampling of a joint starts, radians: far from angles at which axes may line up, and elimination loses digits.
-const OFFSET: f64 = 0.0937;
 
 /// Cells that a piece is cut into before cells are halved.
 const FIRST: usize = 64;
 
 /// Cells in doubt after which a piece is left to a nearer look at what is in doubt.
-const MOST_OPEN: usize = 1000;
+const MOST_OPEN: usize = 10_000;
 
-/// How often doubt is looked at nearer.
-const DEPTH: usize = 4;
+/// Doubt narrower than this is left, radians: where determinants of all orders have double roots.
+const ENOUGH: f64 = 5e-5;
+
+/// How often doubt is looked at, the first time over the whole range.
+const DEPTH: usize = 2;
 
 /// Nearer looks at most, all together.
 const MOST_VIEWS: usize = 60;
 
 /// Waves below this part of the largest are rounding.
 const ROUNDING: f64 = 1e-9;
-
-/// Orders in a row that must find nothing new of a loop of six.
-const SURE: usize = 3;
 
 /// Seven lines about which the joints turn at zero, and the motion that takes the tip from there to the pose.
 #[derive(Debug, Clone)]
@@ -93,39 +87,24 @@ impl Seven {
         Self { lines, goal }
     }
 
-    /// The six equations of the loop as they are with the joint at `place` (3 to 5 from zero) where its cosine and sine are `1, 0`, then `0, 1`,
-    /// then `-1, 0`: in between they are linear.
-    fn equations(&self, place: usize, swapped: bool) -> [Six; 3] {
-        let origin = self.lines[2].point;
-        // The unit of length is the farthest point from there: one on the first axis, whatever the given joint does.
-        let reach = self.lines.iter().map(|line| distance(line.point, origin)).fold(0.0, f64::max);
-        let mut arranged = self.clone();
-        let first = &mut arranged.lines[0];
-        first.point = plus(first.point, times(first.direction, 4.0 * reach));
-        let both = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]].map(|turn| {
-            let (lines, goal) = arranged.locked(place, turn);
-            sides(&lines, &goal, swapped)
-        });
-        // The right side is the same: rounding of it must not differ.
-        let right = both[0].1;
-        both.map(|(left, _)| without_right(left, right))
-    }
-
     /// Stretches between `low` and `high` of a given joint in which the number of solutions may change, ascending: no wider than `width`
     /// where rounding allows.
     ///
     /// Where two solutions share the sampled joint its determinant has a double root that means nothing; so every order of elimination is
     /// asked before a cell is cut in two. Where it is all but zero it is looked at again nearby.
     pub(super) fn unsteady(&self, given: usize, [low, high]: [f64; 2], width: f64) -> Vec<[f64; 2]> {
-        let orders: Vec<[Six; 3]> = [(3, true), (4, false), (4, true), (5, false), (5, true), (3, false)]
+        let orders: Vec<Equations> = [(3, true), (4, false), (4, true), (5, false), (5, true), (3, false)]
             .into_iter()
-            .map(|(place, reversed)| self.arranged(given, place, reversed).equations(place, reversed))
+            .filter_map(|(place, reversed)| {
+                let loop_of = self.arranged(given, place, reversed);
+                Equations::new(&loop_of.lines, &loop_of.goal, place, reversed)
+            })
             .collect();
         let mut open = vec![[low, high]];
         let mut views = 0;
         for _ in 0..DEPTH {
             let (narrow, wide): (Vec<_>, Vec<_>) =
-                open.into_iter().partition(|[low, high]| high - low <= 4.0 * width);
+                open.into_iter().partition(|[low, high]| high - low <= ENOUGH.max(4.0 * width));
             open = narrow;
             for piece in wide {
                 views += 1;
@@ -163,7 +142,7 @@ impl Seven {
         found
     }
 
-    /// All joint vectors with one joint at a value: by one order of elimination after the other, until several find nothing new.
+    /// All joint vectors with one joint at a value: by every order of elimination.
     fn solved(&self, solver: &Solver, base_from_tip: &Pose, joint: usize, value: f64) -> Vec<[f64; 7]> {
         let (lines, goal) = self.locked(joint, cos_sin(value));
         let goal_frame = frame(base_from_tip);
@@ -171,15 +150,13 @@ impl Seven {
         held[joint] = true;
         let arm = solver.chain.arm(&held);
         let mut found: Vec<[f64; 7]> = Vec::new();
-        let mut nothing_new = 0;
-        for code in (0..ORDERS).step_by(2).chain((1..ORDERS).step_by(2)) {
+        for code in 0..ORDERS {
             let waves = waves_of(&lines, &goal, code);
             let sizes: Vec<f64> = (0..=MAX_DEGREE).map(|k| waves.size(k)).collect();
             let largest = sizes.iter().fold(0.0, |a: f64, x| a.max(*x));
             let degree = (1..=MAX_DEGREE).rev().find(|k| sizes[*k] > ROUNDING * largest);
             let Some(degree) = degree.filter(|_| largest > 1e-25) else { continue };
             let candidates = six(&lines, &goal, &[Order { code, degree, squared: false }], 0.0);
-            let before = found.len();
             for i in 0..candidates.count() {
                 let mut steps = candidates.get(i).to_vec();
                 steps.insert(joint, cos_sin(value));
@@ -191,27 +168,23 @@ impl Seven {
                     found.push(values);
                 }
             }
-            nothing_new = if found.len() > before { 0 } else { nothing_new + 1 };
-            if nothing_new == SURE {
-                break;
-            }
         }
         found
     }
 }
 
 /// The stretches of a piece in which no order is sure of the number of solutions.
-fn unsteady_in(orders: &[[Six; 3]], [low, high]: [f64; 2], width: f64) -> Vec<[f64; 2]> {
+fn unsteady_in(orders: &[Equations], [low, high]: [f64; 2], width: f64) -> Vec<[f64; 2]> {
     let half = 0.5 * (high - low);
     // A little off the middle, where axes may line up.
     let centre = 0.5 * (low + high) + 0.0137 * half;
     let whole = half > 1.5;
-    let view = View { centre: cos_sin(centre), width: if whole { 1.0 } else { libm::tan(0.5 * half) } };
+    let scale = if whole { 1.0 } else { libm::tan(0.5 * half) };
     let seen = |x: f64| {
-        if whole { x - centre } else { 2.0 * libm::atan(libm::tan(0.5 * (x - centre)) / view.width) }
+        if whole { x - centre } else { 2.0 * libm::atan(libm::tan(0.5 * (x - centre)) / scale) }
     };
     let mut polynomials: Vec<(usize, TwoAngles)> =
-        orders.iter().filter_map(|order| Some((0, determinant(order, &view)?))).collect();
+        orders.iter().filter_map(|order| Some((0, order.seen(centre, scale)?))).collect();
     let step = (high - low) / FIRST as f64;
     let end = |k: usize| if k == FIRST { high } else { low + step * k as f64 };
     let mut open: Vec<[f64; 2]> = (0..FIRST).map(|k| [end(k), end(k + 1)]).collect();
@@ -239,61 +212,6 @@ fn unsteady_in(orders: &[[Six; 3]], [low, high]: [f64; 2], width: f64) -> Vec<[f
     }
 }
 
-/// The determinant as a function of the sampled joint and of the given one, the latter as it is seen in a view.
-fn determinant([right, up, left]: &[Six; 3], view: &View) -> Option<TwoAngles> {
-    // One wave more than there are, to see what is rounding.
-    let (rows, columns) = (2 * MAX_DEGREE + 3, 2 * GIVEN_DEGREE + 3);
-    let mut samples = vec![vec![0.0; columns]; rows];
-    for j in 0..columns {
-        let ([c, s], stretch) = view.turn(std::f64::consts::TAU * j as f64 / columns as f64);
-        let factor: f64 = (0..GIVEN_DEGREE).map(|_| stretch).product();
-        let mut equations = *right;
-        for (r, row) in equations.iter_mut().enumerate() {
-            for (n, x) in row.iter_mut().enumerate() {
-                let still = 0.5 * (right[r][n] + left[r][n]);
-                *x = still + c * (right[r][n] - still) + s * (up[r][n] - still);
-            }
-        }
-        for (i, row) in samples.iter_mut().enumerate() {
-            let angle = OFFSET + std::f64::consts::TAU * i as f64 / rows as f64;
-            row[j] = factor * square(&equations, cos_sin(angle));
-        }
-    }
-    TwoAngles::new(&samples, [MAX_DEGREE, GIVEN_DEGREE])
-}
-
-/// Determinant of the six equations and their multiples by the half tangent, with row exchanges over all of it: slower than the kernel's,
-/// and exact where parts of it are singular.
-fn square(six: &Six, turn: [f64; 2]) -> f64 {
-    let mut m = [[0.0; 12]; 12];
-    for (r, row) in at(six, turn).iter().enumerate() {
-        m[r][..9].copy_from_slice(row);
-        m[6 + r][3..].copy_from_slice(row);
-    }
-    let mut product = 1.0;
-    for k in 0..12 {
-        let pivot = (k..12).fold(k, |best, r| if m[r][k].abs() > m[best][k].abs() { r } else { best });
-        if pivot != k {
-            m.swap(pivot, k);
-            product = -product;
-        }
-        let top = m[k];
-        product *= top[k];
-        if top[k] == 0.0 {
-            return 0.0;
-        }
-        for row in &mut m[k + 1..] {
-            let factor = row[k] / top[k];
-            if factor != 0.0 {
-                for (x, above) in row[k..].iter_mut().zip(&top[k..]) {
-                    *x -= factor * above;
-                }
-            }
-        }
-    }
-    product
-}
-
 /// A motion after a turn has been undone.
 fn undone(motion: &Motion, line: &Line, turn: [f64; 2]) -> Motion {
     let back = [turn[0], -turn[1]];
@@ -301,9 +219,4 @@ fn undone(motion: &Motion, line: &Line, turn: [f64; 2]) -> Motion {
     let columns = unit.map(|e| motion.turned(line.turned(e, back)));
     let rows = [0, 1, 2].map(|i| columns.map(|column| column[i]));
     Motion { rows, place: plus(motion.turned(line.carried([0.0; 3], back)), motion.place) }
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    let d = minus(a, b);
-    libm::sqrt(dot(d, d))
 }

@@ -8,13 +8,16 @@
 //!
 //! With a spherical shoulder and a spherical wrist the set is known in closed form ([`Solver::swivel`]), and complete.
 //!
-//! The general solver of six joints is not made of equations with one unknown. With it seven turning joints are cut where branches may meet
-//! (`general`) and where a joint comes to a limit; of other chains only points can be tried, and the result says so.
+//! The general solver of six joints is not made of equations with one unknown. With it, and where bounds say too little, seven turning joints
+//! are cut where branches may meet (`general`) and where a joint comes to a limit; of other chains only points can be tried, and the
+//! result says so.
 
 // `!(x < y)` is meant: a NaN must count as too large.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 mod bounds;
+mod determinant;
+mod double;
 mod general;
 mod interval;
 mod pick;
@@ -35,9 +38,12 @@ use robotc_core::rng::Rng;
 pub use self::spherical::Side;
 pub use self::swivel::SwivelBranch;
 
-use self::search::{POINTS, Search, State};
+use self::search::{POINTS, Search, widest_unknown};
 use super::Solver;
 use crate::ir::RootKind;
+
+/// Cells of unknown state that are wider than this are looked at in another way, if there is one; radians.
+const NARROW: f64 = 1e-4;
 
 /// Choices of [`Solver::free_intervals`].
 #[derive(Debug, Clone, PartialEq)]
@@ -50,7 +56,7 @@ pub struct RedundancyOptions {
 
 impl Default for RedundancyOptions {
     fn default() -> Self {
-        Self { width: 1e-6, cells: 20_000 }
+        Self { width: 1e-6, cells: 4000 }
     }
 }
 
@@ -186,18 +192,23 @@ impl Solver {
             ranges: &ranges,
             first: Preferences { max_solutions: 1, near: None, ..preferences.clone() },
         };
-        let width = options.width.max(100.0 * program.slack);
         // Roots of eight waves take long to bound, six joints at once cannot be.
         let general = program.uses(RootKind::Six) || program.uses(RootKind::Octic);
-        let changes = general.then(|| search.between_changes([low, high], options)).flatten();
-        let sampled = changes.is_none() && program.uses(RootKind::Six);
-        let cells = match changes {
-            Some(cells) => cells,
-            None if sampled => search.points(low, high),
-            None => search.cells(low, high, width, options.cells),
+        let width = options.width.max(100.0 * program.slack);
+        let bounded = || (search.cells(low, high, width, options.cells), width);
+        let between = || Some((search.between_changes([low, high], options)?, options.width));
+        let known = if general {
+            between()
+        } else {
+            // Where unknowns are nearly free, and of a snapped chain, bounds may say little.
+            let (cells, width) = bounded();
+            let between = if widest_unknown(&cells) > NARROW { between() } else { None };
+            between.or(Some((cells, width)))
         };
-        let unknown =
-            cells.iter().filter(|c| c.state == State::Unknown).map(|c| c.high - c.low).fold(0.0, f64::max);
+        let sampled = known.is_none() && program.uses(RootKind::Six);
+        let (cells, width) =
+            known.unwrap_or_else(|| if sampled { (search.points(low, high), width) } else { bounded() });
+        let unknown = widest_unknown(&cells);
         let step = (high - low) / POINTS as f64;
         let completeness = if sampled || unknown > step {
             Completeness::Sampled(step)

@@ -29,6 +29,11 @@ pub(super) struct Cell {
     pub(super) state: State,
 }
 
+/// Width of the widest cell of unknown state.
+pub(super) fn widest_unknown(cells: &[Cell]) -> f64 {
+    cells.iter().filter(|c| c.state == State::Unknown).map(|c| c.high - c.low).fold(0.0, f64::max)
+}
+
 pub(super) struct Search<'a> {
     pub(super) solver: &'a Solver,
     pub(super) base_from_tip: &'a Pose,

@@ -3,14 +3,19 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// Least rounding of a value, as a part of the largest sample.
+use super::double::{Double, both, division, turn_along};
+
+/// Rounding of a value on a stretch, as a part of the sizes that it is the sum of.
 const NOISE: f64 = 1e-14;
 
-/// Rounding of values is no more than so many times the largest wave that should not be there.
+/// Rounding of coefficients is no more than so many times the largest wave that should not be there.
 const SAFETY: f64 = 30.0;
 
 /// With more rounding than this nothing can be said: the function is rounding of one that vanishes everywhere.
 const HOPELESS: f64 = 1e-4;
+
+/// Least rounding of coefficients, as a part of the largest sample.
+const ROUNDING: f64 = 1e-28;
 
 /// Arcs that the circle is cut into before arcs are halved.
 const ARCS: usize = 48;
@@ -21,19 +26,20 @@ const NARROW: f64 = 1e-7;
 /// Derivatives that the value on an arc is bounded from.
 const ORDER: usize = 5;
 
+/// Derivatives that the polynomial on a stretch is bounded from.
+const CHANGES: usize = 5;
+
 /// `sum f[i][j] b_i(q) b_j(u)` with `b = 1, cos, sin, cos 2, sin 2, ...`.
 #[derive(Debug, Clone)]
 pub(super) struct TwoAngles {
-    rows: Vec<Vec<f64>>,
+    rows: Vec<Vec<Double>>,
     noise: f64,
 }
 
-/// The polynomial of `q` on a stretch of `u`: for each `u` its value is `value + d change` for some `d` of the half width, but for what
-/// it bends.
+/// The polynomial of `q` on a stretch of `u`: its value in the middle, then what each derivative can add to it at most, as a part of
+/// that derivative's own polynomial.
 struct Stretch {
-    value: Vec<f64>,
-    change: Vec<f64>,
-    half: f64,
+    terms: [Vec<f64>; CHANGES],
     /// Bounds of what is left, for the function and its slope.
     rest: [f64; 2],
 }
@@ -41,22 +47,23 @@ struct Stretch {
 impl TwoAngles {
     /// From samples at equal steps, those of `q` in rows, those of `u` in columns, odd numbers of both, and the highest waves of both: what
     /// the samples show beyond them is rounding. `None` where all is.
-    pub(super) fn new(samples: &[Vec<f64>], degrees: [usize; 2]) -> Option<Self> {
-        let largest = samples.iter().flatten().fold(0.0, |a: f64, x| a.max(x.abs()));
+    pub(super) fn new(samples: &[Vec<Double>], degrees: [usize; 2]) -> Option<Self> {
+        let largest = samples.iter().flatten().fold(0.0, |a: f64, x| a.max(x.near().abs()));
         if !(largest > 1e-200 && largest < f64::INFINITY) {
             return None;
         }
-        let by_u: Vec<Vec<f64>> = samples.iter().map(|row| waves(row)).collect();
-        let columns: Vec<Vec<f64>> = (0..by_u[0].len())
-            .map(|j| waves(&by_u.iter().map(|row| row[j] / largest).collect::<Vec<f64>>()))
+        let scale = Double::ONE / Double::from(largest);
+        let by_u: Vec<Vec<Double>> = samples.iter().map(|row| waves(row)).collect();
+        let columns: Vec<Vec<Double>> = (0..by_u[0].len())
+            .map(|j| waves(&by_u.iter().map(|row| row[j] * scale).collect::<Vec<_>>()))
             .collect();
         let [kept_rows, kept_columns] = degrees.map(|degree| 2 * degree + 1);
         let mut beyond = 0.0f64;
         for (j, column) in columns.iter().enumerate() {
             let from = if j < kept_columns { kept_rows } else { 0 };
-            beyond = column[from..].iter().fold(beyond, |a, x| a.max(x.abs()));
+            beyond = column[from..].iter().fold(beyond, |a, x| a.max(x.near().abs()));
         }
-        let noise = NOISE + SAFETY * beyond;
+        let noise = ROUNDING + SAFETY * beyond;
         let kept = &columns[..kept_columns];
         let rows = (0..kept_rows).map(|i| kept.iter().map(|column| column[i]).collect()).collect();
         (noise < HOPELESS).then_some(Self { rows, noise })
@@ -65,91 +72,151 @@ impl TwoAngles {
     fn stretch(&self, low: f64, high: f64) -> Stretch {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let count = self.rows[0].len();
-        let (mut basis, mut slopes, mut bends) = (vec![1.0; count], vec![0.0; count], vec![0.0; count]);
-        for j in 1..count {
-            let k = j.div_ceil(2) as f64;
-            let (c, s) = (libm::cos(k * middle), libm::sin(k * middle));
-            (basis[j], slopes[j]) = if j % 2 == 1 { (c, -k * s) } else { (s, k * c) };
-            bends[j] = 0.5 * k * k * half * half;
+        // Cosines and sines of the waves, each derivative the other one times its frequency and half of the width, by its order.
+        let mut bases = vec![vec![Double::ZERO; count]; CHANGES];
+        let mut left = vec![0.0; count];
+        let step = turn_along(libm::cos(middle), libm::sin(middle));
+        let mut turn = [Double::ONE, Double::ZERO];
+        bases[0][0] = Double::ONE;
+        for (k, j) in (1..).zip((1..count).step_by(2)) {
+            turn = both(turn, step);
+            let mut pair = turn;
+            let mut size = 1.0;
+            for (order, basis) in bases.iter_mut().enumerate() {
+                [basis[j], basis[j + 1]] = pair;
+                let factor = Double::from(f64::from(k) * half / (order + 1) as f64);
+                pair = [-pair[1] * factor, pair[0] * factor];
+                size *= f64::from(k) * half / (order + 1) as f64;
+            }
+            (left[j], left[j + 1]) = (size, size);
         }
-        let sum = |row: &[f64], by: &[f64]| row.iter().zip(by).map(|(f, b)| f * b).sum::<f64>();
         let mut rest = [self.noise; 2];
         for (i, row) in self.rows.iter().enumerate() {
-            let bend: f64 = row.iter().zip(&bends).map(|(f, b)| f.abs() * b).sum();
+            let bend: f64 = row.iter().zip(&left).map(|(f, b)| f.near().abs() * b).sum();
             rest[0] += bend;
             rest[1] += bend * i.div_ceil(2) as f64;
         }
         rest[1] += self.noise * self.rows.len() as f64;
-        Stretch {
-            value: self.rows.iter().map(|row| sum(row, &basis)).collect(),
-            change: self.rows.iter().map(|row| sum(row, &slopes)).collect(),
-            half,
-            rest,
-        }
+        let along = |basis: &[Double]| -> Vec<f64> {
+            let sum = |row: &Vec<Double>| row.iter().zip(basis).map(|(f, b)| *f * *b).sum::<Double>();
+            self.rows.iter().map(|row| sum(row).near()).collect()
+        };
+        Stretch { terms: std::array::from_fn(|order| along(&bases[order])), rest }
     }
 
     /// Whether the roots in `q` are as many, and each of them single, for all `u` from `low` to `high`; `false` also means not known.
     pub(super) fn is_steady(&self, low: f64, high: f64) -> bool {
-        let stretch = self.stretch(low, high);
+        let Stretch { terms, mut rest } = self.stretch(low, high);
         let size = |row: &[f64], power: i32| -> f64 {
             row.iter().enumerate().map(|(i, x)| x.abs() * (i.div_ceil(2) as f64).powi(power)).sum()
         };
-        let bounds = [size(&stretch.value, ORDER as i32), size(&stretch.change, ORDER as i32)];
-        let mut open: Vec<(f64, f64)> =
-            (0..ARCS).map(|k| (-PI + TAU * (k as f64 + 0.5) / ARCS as f64, PI / ARCS as f64)).collect();
-        while let Some((centre, radius)) = open.pop() {
-            let value = derivatives(&stretch.value, centre);
-            let change = derivatives(&stretch.change, centre);
-            // What the derivative of this order is at the centre less what it can become: free of roots when positive.
-            let left = |order: usize, radius: f64| {
-                let mut moved = 0.0;
-                let mut factor = 1.0;
-                for k in order..ORDER {
-                    if k > order {
-                        factor *= radius / (k - order) as f64;
-                        moved += value[k].abs() * factor;
-                    }
-                    moved += stretch.half * change[k].abs() * factor;
+        rest[0] += NOISE * size(&terms[0], 0);
+        rest[1] += NOISE * size(&terms[0], 1);
+        let bound: f64 = terms.iter().map(|row| size(row, ORDER as i32)).sum();
+        let mut open: Vec<Strip> = (0..ARCS)
+            .map(|k| Strip {
+                centre: -PI + TAU * (k as f64 + 0.5) / ARCS as f64,
+                radius: PI / ARCS as f64,
+                lean: 0.0,
+            })
+            .collect();
+        while let Some(mut strip) = open.pop() {
+            let slopes = Slopes::at(&terms, strip.centre);
+            strip.follow(&slopes);
+            let Strip { centre, radius, lean } = strip;
+            let leaning = slopes.along(lean);
+            // What the function, or its slope, is in the middle less what it can become: free of roots when positive.
+            let left = |slope: usize, radius: f64| {
+                let (mut lost, mut power) = (0.0, 1.0);
+                for (j, row) in leaning.0.iter().enumerate().skip(slope) {
+                    let times = if slope == 1 { j as f64 } else { 1.0 };
+                    lost += times * power * row.iter().map(|x| x.abs()).sum::<f64>();
+                    power *= radius;
                 }
-                factor *= radius / (ORDER - order) as f64;
-                moved += (bounds[0] + stretch.half * bounds[1]) * factor;
-                value[order].abs() - moved - stretch.rest[order]
+                let tail = (1..=ORDER - slope).fold(bound, |x, k| x * (radius + lean.abs()) / k as f64);
+                // The middle itself was counted as lost.
+                2.0 * leaning.0[slope][0].abs() - lost - tail - rest[slope]
             };
             if left(0, radius) > 0.0 || left(1, radius) > 0.0 {
                 continue;
             }
-            // No narrower arc would tell.
+            // No narrower strip would tell.
             if radius < NARROW || left(0, 0.0) <= 0.0 && left(1, 0.0) <= 0.0 {
                 return false;
             }
-            open.push((centre - 0.5 * radius, 0.5 * radius));
-            open.push((centre + 0.5 * radius, 0.5 * radius));
+            for side in [-0.5, 0.5] {
+                open.push(Strip { centre: centre + side * radius, radius: 0.5 * radius, lean });
+            }
         }
         true
     }
 }
 
+/// Angles `q` within `radius` of `centre + lean w`, where `w` runs from -1 to 1 as `u` does over its stretch.
+#[derive(Clone, Copy)]
+struct Strip {
+    centre: f64,
+    radius: f64,
+    lean: f64,
+}
+
+impl Strip {
+    /// Leans as the roots in it do, if it does not become much wider by that: it holds all that it held.
+    fn follow(&mut self, slopes: &Slopes) {
+        let a = &slopes.0;
+        let single = a[1][0].abs() > self.radius * a[2][0].abs();
+        let lean = if single { -a[0][1] / a[1][0] } else { -0.5 * a[1][1] / a[2][0] };
+        let more = (lean - self.lean).abs();
+        if more < 0.25 * self.radius {
+            self.lean = lean;
+            self.radius += more;
+        }
+    }
+}
+
+/// Coefficients of `d^j w^p` around a place, `d` being what `q` differs from it.
+struct Slopes([[f64; ORDER + CHANGES]; ORDER]);
+
+impl Slopes {
+    fn at(terms: &[Vec<f64>; CHANGES], centre: f64) -> Self {
+        let mut found = [[0.0; ORDER + CHANGES]; ORDER];
+        for (p, row) in terms.iter().enumerate() {
+            let mut factor = 1.0;
+            for (j, x) in derivatives(row, centre).into_iter().enumerate() {
+                factor /= j.max(1) as f64;
+                found[j][p] = x * factor;
+            }
+        }
+        Self(found)
+    }
+
+    /// The same where the place moves by `lean w`.
+    fn along(&self, lean: f64) -> Self {
+        let mut found = [[0.0; ORDER + CHANGES]; ORDER];
+        for k in 0..ORDER {
+            // (d + lean w)^k
+            let mut part = 1.0;
+            for j in (0..=k).rev() {
+                for p in 0..CHANGES {
+                    found[j][k - j + p] += part * self.0[k][p];
+                }
+                part *= lean * j as f64 / (k - j + 1) as f64;
+            }
+        }
+        Self(found)
+    }
+}
+
 /// Coefficients of `1, cos, sin, cos 2, ...` from an odd number of samples at equal steps from zero.
-fn waves(samples: &[f64]) -> Vec<f64> {
+fn waves(samples: &[Double]) -> Vec<Double> {
     let n = samples.len();
-    let turns: Vec<(f64, f64)> = (0..n)
-        .map(|i| {
-            let angle = TAU * i as f64 / n as f64;
-            (libm::cos(angle), libm::sin(angle))
-        })
-        .collect();
+    let turns = division(n);
     (0..n)
         .map(|i| {
             let k = i.div_ceil(2);
-            let sum: f64 = samples
-                .iter()
-                .enumerate()
-                .map(|(place, x)| {
-                    let (c, s) = turns[place * k % n];
-                    x * if i % 2 == 1 || i == 0 { c } else { s }
-                })
-                .sum();
-            sum * if i == 0 { 1.0 } else { 2.0 } / n as f64
+            let part = usize::from(i % 2 == 0 && i > 0);
+            let sum: Double = samples.iter().enumerate().map(|(at, x)| *x * turns[at * k % n][part]).sum();
+            sum * Double::from(if i == 0 { 1.0 } else { 2.0 }) / Double::from(n as f64)
         })
         .collect()
 }
@@ -201,8 +268,10 @@ mod tests {
             let samples: Vec<Vec<f64>> = (0..11)
                 .map(|i| (0..7).map(|j| f(TAU * f64::from(i) / 11.0, TAU * f64::from(j) / 7.0)).collect())
                 .collect();
-            let polynomial = TwoAngles::new(&samples, [4, 2]).unwrap();
-            let here = derivatives(&polynomial.stretch(0.7, 0.7).value, 1.2);
+            let doubles: Vec<Vec<Double>> =
+                samples.iter().map(|row| row.iter().map(|x| Double::from(*x)).collect()).collect();
+            let polynomial = TwoAngles::new(&doubles, [4, 2]).unwrap();
+            let here = derivatives(&polynomial.stretch(0.7, 0.7).terms[0], 1.2);
             assert!(
                 (here[0] * samples.iter().flatten().fold(0.0, |b: f64, x| b.max(x.abs())) - f(1.2, 0.7))
                     .abs()
