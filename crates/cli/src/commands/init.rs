@@ -43,6 +43,7 @@ pub(crate) fn run(args: &Init) -> Outcome {
         packages,
         arguments,
         folder: args.output.as_ref().and_then(|path| path.parent()).map(PathBuf::from).unwrap_or_default(),
+        here: std::env::current_dir().unwrap_or_default(),
     };
     let (text, found) = spec::init(&OsSystem, &mut sources, &options);
     report(&found, &sources);

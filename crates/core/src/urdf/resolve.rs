@@ -20,7 +20,8 @@ pub(crate) struct Resolved {
 /// The existing file that `uri`, written in the file `description`, means; or `None`.
 ///
 /// `package://NAME/rest` and `model://NAME/rest` are looked up in `packages`, then as `NAME/rest`, or `rest` in a folder
-/// called NAME, from the folder of the description upwards. Absolute paths of another machine are tried by their tails.
+/// called NAME or with a manifest that says NAME, from the folder of the description upwards; and last as `rest` in any of these folders,
+/// which is a guess. Absolute paths of another machine are tried by their tails.
 pub(crate) fn resolve(
     system: &dyn System,
     packages: &BTreeMap<String, PathBuf>,
@@ -31,6 +32,15 @@ pub(crate) fn resolve(
     for (path, exact) in &candidates {
         if system.exists(path) {
             return Some(Resolved { path: path.clone(), guessed: !exact });
+        }
+    }
+    if let Some((name, rest)) = package_reference(uri).and_then(|reference| reference.split_once('/')) {
+        let below = |folder: PathBuf| Some(normal(&folder.join(rest))).filter(|path| system.exists(path));
+        if let Some(path) = package_folder(system, packages, description, name).and_then(below) {
+            return Some(Resolved { path, guessed: false });
+        }
+        if let Some(path) = folders_above(description).find_map(below) {
+            return Some(Resolved { path, guessed: true });
         }
     }
     candidates
@@ -70,6 +80,12 @@ fn is_package(system: &dyn System, folder: &Path, name: &str) -> bool {
     written.is_some_and(|(written, _)| written.trim() == name)
 }
 
+/// What comes after the scheme of a reference into a package: its name and a path.
+fn package_reference(uri: &str) -> Option<&str> {
+    let reference = uri.trim().strip_prefix("package://").or_else(|| uri.trim().strip_prefix("model://"));
+    reference.filter(|r| !r.starts_with('/'))
+}
+
 /// Whether the folder that `uri` means does not exist here: the file is not missing, but somewhere else.
 pub(crate) fn is_away(
     system: &dyn System,
@@ -77,8 +93,7 @@ pub(crate) fn is_away(
     description: &Path,
     uri: &str,
 ) -> bool {
-    let reference = uri.strip_prefix("package://").or_else(|| uri.strip_prefix("model://"));
-    if let Some(reference) = reference.filter(|r| !r.starts_with('/')) {
+    if let Some(reference) = package_reference(uri) {
         let name = reference.split('/').next().unwrap_or_default();
         return package_folder(system, packages, description, name).is_none();
     }

@@ -242,7 +242,13 @@ fn mesh_references_of_all_kinds_are_found() {
         packages: [("far".to_owned(), "elsewhere/far".into())].into(),
         ..LoadOptions::default()
     };
-    let files = [("d/m.obj", OBJ), ("pkg/meshes/m.obj", OBJ), ("elsewhere/far/m.obj", OBJ), ("d/n.OBJ", OBJ)];
+    let files = [
+        ("package.xml", "<package><name>called</name></package>"),
+        ("d/m.obj", OBJ),
+        ("pkg/meshes/m.obj", OBJ),
+        ("elsewhere/far/m.obj", OBJ),
+        ("d/n.OBJ", OBJ),
+    ];
     let table = [
         ("m.obj", ""),
         ("./x/../m.obj", ""),
@@ -251,6 +257,8 @@ fn mesh_references_of_all_kinds_are_found() {
         ("package://d/m.obj", ""),
         ("package://far/m.obj", ""),
         ("$(find far)/m.obj", ""),
+        ("package://called/pkg/meshes/m.obj", ""),
+        ("package://renamed/pkg/meshes/m.obj", "R0305"),
         ("meshes\\..\\m.obj", ""),
         ("file:///home/me/ws/pkg/meshes/m.obj", "R0305"),
         ("/opt/pkg/meshes/m.obj", "R0305"),

@@ -19,7 +19,7 @@ use crate::ids::{DofIdx, LinkIdx};
 use crate::model::{Kinematics, RobotModel};
 use crate::srdf::Srdf;
 use crate::system::System;
-use crate::urdf::{self, LoadOptions, MeshPolicy};
+use crate::urdf::{self, LoadOptions, MeshPolicy, normal};
 use crate::{joint_limits, srdf};
 
 /// What to write a specification for.
@@ -37,6 +37,20 @@ pub struct InitOptions {
     pub arguments: BTreeMap<String, String>,
     /// The folder that the specification will be written to: paths in it start there. Empty: the current one.
     pub folder: PathBuf,
+    /// The current folder, absolute; empty where there is none. Only it tells what is beside a folder outside of it.
+    pub here: PathBuf,
+}
+
+impl InitOptions {
+    /// `path` as the specification has to name it. Absolute paths stay as they are.
+    fn from_specification(&self, path: &Path) -> PathBuf {
+        let around = |path: &Path| normal(&self.here.join(path));
+        relative(&self.folder, path)
+            .or_else(
+                || if path.is_absolute() { None } else { relative(&around(&self.folder), &around(path)) },
+            )
+            .unwrap_or_else(|| path.to_owned())
+    }
 }
 
 /// The text of a robot specification, with comments on what was guessed; `None` when the files cannot be used, or the robot
@@ -204,16 +218,17 @@ fn side(link: &str) -> Option<&'static str> {
     }
 }
 
-/// `path` as seen from `folder`; unchanged when there is no way between them by names alone.
-fn relative(folder: &Path, path: &Path) -> PathBuf {
+/// `path` as seen from `folder`, by names alone: there is none from an absolute folder to a relative path, or out of a folder
+/// whose own name is not known.
+fn relative(folder: &Path, path: &Path) -> Option<PathBuf> {
     let from: Vec<Component> = folder.components().filter(|c| *c != Component::CurDir).collect();
     let to: Vec<Component> = path.components().filter(|c| *c != Component::CurDir).collect();
     let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
     if folder.is_absolute() != path.is_absolute() || from[shared..].contains(&Component::ParentDir) {
-        return path.to_owned();
+        return None;
     }
     let up = std::iter::repeat_n(Component::ParentDir, from.len() - shared);
-    up.chain(to[shared..].iter().copied()).collect()
+    Some(up.chain(to[shared..].iter().copied()).collect())
 }
 
 #[cfg(test)]
@@ -223,13 +238,17 @@ mod tests {
     #[test]
     fn paths_lead_from_one_folder_to_another() {
         let check = |folder: &str, path: &str, expected: &str| {
-            assert_eq!(relative(Path::new(folder), Path::new(path)), Path::new(expected));
+            let options =
+                InitOptions { folder: folder.into(), here: "/home/me".into(), ..InitOptions::default() };
+            assert_eq!(options.from_specification(Path::new(path)), Path::new(expected));
         };
         check("", "robots/a.urdf", "robots/a.urdf");
         check("specs", "specs/a/b.urdf", "a/b.urdf");
         check("specs/robots", "data/a.urdf", "../../data/a.urdf");
-        check("../specs", "data/a.urdf", "data/a.urdf");
+        check("../specs", "data/a.urdf", "../me/data/a.urdf");
+        check("../specs", "../specs/a.urdf", "a.urdf");
         check("/a/b", "/a/c/d.urdf", "../c/d.urdf");
+        check("/home/you", "d.urdf", "../me/d.urdf");
         check("a", "/c/d.urdf", "/c/d.urdf");
     }
 

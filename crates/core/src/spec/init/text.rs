@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::hands::Hand;
-use super::{Guess, GuessedArm, InitOptions, groups, relative};
+use super::{Guess, GuessedArm, InitOptions, groups};
 use crate::ids::LinkIdx;
 use crate::model::{Dof, DynamicLimits, RobotModel};
 use crate::robot::Base;
@@ -27,7 +27,7 @@ pub(super) fn write(guess: &Guess, options: &InitOptions) -> String {
     if !options.packages.is_empty() {
         text += "\n[packages]\n";
         for (name, folder) in &options.packages {
-            text += &format!("{} = {}\n", quoted(name), path_text(&relative(&options.folder, folder)));
+            text += &format!("{} = {}\n", quoted(name), path_text(&options.from_specification(folder)));
         }
     }
     if !options.arguments.is_empty() {
@@ -47,7 +47,7 @@ pub(super) fn write(guess: &Guess, options: &InitOptions) -> String {
 }
 
 fn reference(key: &str, path: &Path, options: &InitOptions) -> String {
-    format!("{key} = {}\n", path_text(&relative(&options.folder, path)))
+    format!("{key} = {}\n", path_text(&options.from_specification(path)))
 }
 
 fn base(base: &Base) -> String {
