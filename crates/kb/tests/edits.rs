@@ -119,7 +119,7 @@ const EDITS: &[Edit] = &[
         apply: |s| {
             s.object.geometry = Arc::new(vec![support::cuboid([0.05, 0.05, 0.1], [0.0; 3])]);
         },
-        rebuilt: &["convex_parts tidy/mug", "grasp_set arm/jaws+tidy/mug"],
+        rebuilt: &["convex_parts tidy/mug", "grasp_set arm/jaws+tidy/mug", "sphere_cover tidy/mug"],
         because: "changed: shape of tidy/mug",
     },
     Edit {

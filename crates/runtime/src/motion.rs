@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use robotc_core::geom::{CoverOptions, SphereCover};
 use robotc_core::ids::Idx;
 use robotc_core::{BodyIdx, Configuration, LinkIdx, Pose, Trajectory};
 use robotc_planning::edge::{Blocked, walk_edge};
@@ -67,9 +66,6 @@ pub struct FirstContact {
     /// The same in words, or what else is wrong: a limit, the constraint.
     pub message: String,
 }
-
-/// Balls around what is held are made for each problem, so that there are few of them.
-const OF_HELD: CoverOptions = CoverOptions { overshoot: 0.5, least: 0.01 };
 
 /// The robot and the things around it as a problem says.
 struct Situation {
@@ -245,10 +241,9 @@ impl Session {
             false => make(&[]),
         };
         let Some(grip) = &situation.held else { return Some(robot) };
-        let parts = scene.parts_of(grip.body);
-        let cover = SphereCover::of(&parts, &OF_HELD);
+        let cover = &self.object_covers()[grip.body.index()];
         let beside = |link| problem.self_collisions && gripper.binary_search(&link).is_err();
-        Some(Arc::new(robot.holding(scene, grip, &cover, beside)))
+        Some(Arc::new(robot.holding(scene, grip, cover, beside)))
     }
 
     fn constraint(&self, problem: &PlanningProblem) -> Result<Option<Box<dyn Constraint + '_>>, MotionError> {
@@ -282,7 +277,9 @@ impl Session {
             (Some(held), Some(gripper)) => {
                 let gripper = &task.robot.grippers[gripper];
                 let link_from_body = gripper.palm_from_tool * pose(&held.tool_from_object)?;
-                Some(Grip { body: body(&held.object)?, link: gripper.palm, link_from_body })
+                let objects: Vec<&str> = task.objects.iter().map(|object| object.name.as_str()).collect();
+                let object = named("object", &held.object, &objects)?;
+                Some(Grip { body: BodyIdx::new(object), link: gripper.palm, link_from_body })
             }
             _ => None,
         };

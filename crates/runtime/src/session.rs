@@ -75,6 +75,7 @@ pub struct Session {
     arm: ArmModel,
     scene: Scene,
     links: LinkShapes,
+    object_covers: Vec<Arc<robotc_core::geom::SphereCover>>,
     grasps: Vec<GraspSet>,
     cages: Vec<Arc<Vec<Cage>>>,
     reachability: Option<Arc<ReachabilityMap>>,
@@ -98,8 +99,10 @@ impl Session {
                 covers[link] = knowledge.load::<SphereCover>(&OfShape::Link(link))?;
             }
         }
-        // In the order of the world's bodies.
         let objects = (0..task.objects.len()).map(OfShape::Object);
+        let covers_of_objects = objects.clone().map(|object| knowledge.load::<SphereCover>(&object));
+        let object_covers = covers_of_objects.collect::<Result<_, _>>()?;
+        // In the order of the world's bodies.
         let shapes = objects.chain((0..task.obstacles.len()).map(OfShape::Obstacle));
         let bodies = shapes.map(|shape| knowledge.load::<ConvexParts>(&shape)).collect::<Result<_, _>>()?;
         let pairs: Vec<(LinkIdx, LinkIdx)> =
@@ -132,7 +135,7 @@ impl Session {
                 None => Arc::default(),
             });
         }
-        Ok(Self { task, kinematics, arm, scene, links, grasps, cages, reachability })
+        Ok(Self { task, kinematics, arm, scene, links, object_covers, grasps, cages, reachability })
     }
 
     /// What shall happen.
@@ -158,6 +161,11 @@ impl Session {
     /// Shapes of the links, as the lane checker wants them.
     pub(crate) fn link_shapes(&self) -> &LinkShapes {
         &self.links
+    }
+
+    /// Balls that cover each object of the task, for what is held.
+    pub(crate) fn object_covers(&self) -> &[Arc<robotc_core::geom::SphereCover>] {
+        &self.object_covers
     }
 
     /// The grasp set of each object of the task, best first. The planner tries them in an order of its own, which also

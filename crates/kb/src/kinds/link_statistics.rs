@@ -2,6 +2,7 @@
 
 use robotc_core::LinkIdx;
 use robotc_core::ids::Idx;
+use serde::{Deserialize, Serialize};
 
 use super::ConvexParts;
 use crate::codec;
@@ -34,10 +35,9 @@ pub struct Robot {
 }
 
 /// What is known about a degree of freedom.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct JointStatistics {
-    /// Area of the cross-section of the volume it sweeps, with a half plane through the axis of a turning joint or a plane
-    /// across the axis of a sliding one; m^2.
+    /// Area of all its [sections](Self::sections), m^2.
     pub cross_section: f64,
     /// Volume of all links that it moves, m^3; what several convex parts share is counted for each.
     pub moved_volume: f64,
@@ -46,11 +46,56 @@ pub struct JointStatistics {
     pub reach: f64,
     /// Weight in the configuration metric; see [`LinkStatistics`].
     pub weight: f64,
+    /// The volume that is swept, cut: one section for each joint that it drives, in the order of the joints.
+    pub sections: Vec<SweptSection>,
 }
+
+/// The cross-section of the volume that a joint sweeps: with a half plane through the axis of a turning joint, or a plane across
+/// the axis of a sliding one. Its squares stand in rows, lowest first.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct SweptSection {
+    /// Edge of a square, metres.
+    pub cell: f64,
+    /// The rows that have squares.
+    pub rows: Vec<SectionRow>,
+}
+
+/// Squares beside each other.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct SectionRow {
+    /// Their lower edge in edges of a square: along the axis of a turning joint, along y for a sliding one.
+    pub height: i32,
+    /// The near edge of the first, in edges of a square: from the axis of a turning joint, along x for a sliding one.
+    pub first: i32,
+    /// In how many of 64 directions about the axis each is swept; 0 where it is not, 64 for what slides.
+    pub swept: Vec<u8>,
+}
+
+impl SweptSection {
+    /// Its area, m^2.
+    pub fn area(&self) -> f64 {
+        let squares = self.rows.iter().flat_map(|row| &row.swept).filter(|swept| **swept > 0).count();
+        squares as f64 * self.cell * self.cell
+    }
+
+    /// Whether its rows stand one above the other, at places that can be reckoned with.
+    fn is_sound(&self) -> bool {
+        const FAR: u32 = 1 << 20;
+        let near = |row: &SectionRow| {
+            row.height.unsigned_abs() < FAR
+                && row.first.unsigned_abs() < FAR
+                && row.swept.len() < FAR as usize
+        };
+        self.rows.iter().all(near) && self.rows.is_sorted_by(|a, b| a.height < b.height)
+    }
+}
+
+/// Four measures, and sections.
+type Stored = ([f64; 4], Vec<SweptSection>);
 
 impl Kind for LinkStatistics {
     const NAME: &'static str = "link_statistics";
-    const FORMAT: u32 = 1;
+    const FORMAT: u32 = 2;
     const ALGORITHM: u32 = 1;
     const PORTABILITY: Portability = Portability::Portable;
     const DOC: &'static str = "Swept cross-section, moved volume and reach of every joint. They weigh the joints in the planners' metric.";
@@ -92,20 +137,27 @@ impl Kind for LinkStatistics {
     }
 
     fn encode(artefact: &Vec<JointStatistics>) -> Vec<u8> {
-        let row = |s: &JointStatistics| [s.cross_section, s.moved_volume, s.reach, s.weight];
-        codec::encode(&artefact.iter().map(row).collect::<Vec<_>>())
+        let stored = |s: &JointStatistics| -> Stored {
+            ([s.cross_section, s.moved_volume, s.reach, s.weight], s.sections.clone())
+        };
+        codec::encode(&artefact.iter().map(stored).collect::<Vec<_>>())
     }
 
     fn decode(bytes: &[u8]) -> Result<Vec<JointStatistics>, DecodeError> {
-        let rows: Vec<[f64; 4]> = codec::decode(bytes)?;
-        if rows.iter().flatten().any(|x| !x.is_finite() || *x < 0.0) {
+        let rows: Vec<Stored> = codec::decode(bytes)?;
+        let cells = rows.iter().flat_map(|(_, sections)| sections).map(|section| &section.cell);
+        if rows.iter().flat_map(|(measures, _)| measures).chain(cells).any(|x| !x.is_finite() || *x < 0.0) {
             return Err(DecodeError::new("a measure is not a finite, non-negative number"));
         }
-        let row = |[cross_section, moved_volume, reach, weight]: [f64; 4]| JointStatistics {
+        if !rows.iter().flat_map(|(_, sections)| sections).all(SweptSection::is_sound) {
+            return Err(DecodeError::new("a section is not made of rows, lowest first"));
+        }
+        let row = |([cross_section, moved_volume, reach, weight], sections): Stored| JointStatistics {
             cross_section,
             moved_volume,
             reach,
             weight,
+            sections,
         };
         Ok(rows.into_iter().map(row).collect())
     }
@@ -150,11 +202,11 @@ mod build {
             let statistics = model.dofs().indices().map(|dof| {
                 let driven = model.joints().indices().filter(|&j| model.driving_dof(j) == Some(dof));
                 let driven: Vec<JointIdx> = driven.collect();
-                let mut sum =
-                    JointStatistics { cross_section: 0.0, moved_volume: 0.0, reach: 0.0, weight: 0.0 };
+                let mut sum = JointStatistics::default();
                 let mut product = 0.0;
                 for &joint in &driven {
                     let (area, volume) = (sweeper.swept[&joint].area(), moved_volume(model, joint, &shapes));
+                    sum.sections.push(sweeper.swept[&joint].rows());
                     sum.cross_section += area;
                     sum.moved_volume += volume;
                     product += area * volume;
@@ -170,7 +222,8 @@ mod build {
             Ok(statistics.collect())
         }
 
-        /// The bounds on travel hold in random configurations: no corner moves faster under a joint.
+        /// Sections have the area that is told of them, and the bounds on travel hold in random configurations: no corner moves
+        /// faster under a joint.
         fn check(
             artefact: &Vec<JointStatistics>,
             inputs: &Robot,
@@ -180,6 +233,16 @@ mod build {
             let model = inputs.mechanism.model();
             if artefact.len() != model.dofs().len() {
                 return Err(BuildError::Check("there is not one row for each degree of freedom".into()));
+            }
+            let of_sections =
+                |row: &JointStatistics| row.sections.iter().map(SweptSection::area).sum::<f64>();
+            if artefact
+                .iter()
+                .any(|row| (of_sections(row) - row.cross_section).abs() > 1e-9 * row.cross_section)
+            {
+                return Err(BuildError::Check(
+                    "sections have another area than they are said to have".into(),
+                ));
             }
             let shapes = load(inputs, context)?;
             let kinematics = Kinematics::new(model.clone());
@@ -262,6 +325,25 @@ mod build {
                 }
                 Cells::Slid(_) => 1.0,
             }
+        }
+
+        fn rows(&self) -> SweptSection {
+            let squares: BTreeMap<(i32, i32), u8> = match &self.cells {
+                Cells::Turned(cells) => {
+                    cells.iter().map(|(&(r, z), b)| ((z, r), b.count_ones() as u8)).collect()
+                }
+                Cells::Slid(cells) => cells.keys().map(|&(x, y)| ((y, x), BINS as u8)).collect(),
+            };
+            let mut rows: Vec<SectionRow> = Vec::new();
+            for ((height, place), swept) in squares {
+                if rows.last().is_none_or(|row| row.height != height) {
+                    rows.push(SectionRow { height, first: place, swept: Vec::new() });
+                }
+                let row = rows.last_mut().expect("one was there or is now");
+                row.swept.resize((place - row.first) as usize, 0);
+                row.swept.push(swept);
+            }
+            SweptSection { cell: self.cell, rows }
         }
 
         /// Points no farther apart than a cell is wide, in every cell of the volume.

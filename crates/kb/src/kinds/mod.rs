@@ -22,7 +22,7 @@ pub use convex_parts::{ConvexParts, ConvexPartsParameters};
 pub use grasp_set::{GraspParameters, GraspSet};
 pub use grasp_shake::{GraspShake, ShakeParameters, Shaken, ranked_grasps};
 pub use ik_solver::{IkParameters, IkSolver};
-pub use link_statistics::{JointStatistics, LinkStatistics, StatisticsParameters};
+pub use link_statistics::{JointStatistics, LinkStatistics, SectionRow, StatisticsParameters, SweptSection};
 pub use reachability::{Reachability, ReachabilityMap, ReachabilityParameters};
 pub use self_collision_pairs::{PairParameters, PairState, PairTable, SelfCollisionPairs};
 pub use sphere_cover::{CoverParameters, SphereCover};

@@ -1,4 +1,4 @@
-//! Balls that cover a link, in a tree: what vectorised collision checks compute with.
+//! Balls that cover a link or an object, in a tree: what vectorised collision checks compute with.
 
 use nalgebra::Point3;
 use robotc_core::geom::{SphereCover as Cover, SphereNode};
@@ -10,9 +10,9 @@ use crate::kind::{DecodeError, Kind, Portability};
 use crate::project::{OfShape, Project, Subject};
 use crate::record::Parts;
 
-/// The kind; its artefact is a [`SphereCover`](robotc_core::geom::SphereCover) in the frame of the link.
+/// The kind; its artefact is a [`SphereCover`](robotc_core::geom::SphereCover) in the frame of the link or object.
 ///
-/// The balls together contain the convex parts of the link, and each knows how large a ball about the same point is inside
+/// The balls together contain its convex parts, and each knows how large a ball about the same point is inside
 /// of them: what touches no ball is free, what touches an inner one is not, and only the rest is looked at more closely.
 pub struct SphereCover;
 
@@ -20,16 +20,18 @@ crate::parameters! {
     /// Parameters of [`SphereCover`].
     pub struct CoverParameters {
         /// How far a ball may stand out of the part that it covers, as a fraction of the radius of a ball around that.
-        overshoot: f64 [""] in 0.005..=1.0 = 0.06;
+        overshoot: f64 [""] in 0.005..=1.0 = auto "0.06 for links, 0.5 for objects";
         /// It may stand out this far in any case: small parts then take few balls.
-        least: f64 ["m"] in 0.0001..=1.0 = 0.003;
+        least: f64 ["m"] in 0.0001..=1.0 = auto "0.003 for links, 0.01 for objects";
     }
 }
 
-/// The convex parts of the link.
-#[cfg_attr(not(feature = "build"), expect(dead_code, reason = "artefacts that only generators load"))]
+/// The convex parts of a link or an object.
 pub struct Inputs {
+    #[cfg_attr(not(feature = "build"), expect(dead_code, reason = "artefacts that only generators load"))]
     parts: Dep<ConvexParts>,
+    /// Of what is carried, which gets few balls.
+    carried: bool,
 }
 
 /// Centre, outer and inner radius, and the position of the first node that is not below.
@@ -40,8 +42,8 @@ impl Kind for SphereCover {
     const FORMAT: u32 = 1;
     const ALGORITHM: u32 = 1;
     const PORTABILITY: Portability = Portability::Portable;
-    const DOC: &'static str =
-        "A tree of balls that covers a link. Vectorised collision checks look at it before anything else.";
+    const DOC: &'static str = "A tree of balls that covers a link or an object that can be held. Vectorised collision checks look at it before \
+        anything else.";
 
     type Subject = OfShape;
     type Inputs = Inputs;
@@ -49,20 +51,25 @@ impl Kind for SphereCover {
     type Artefact = Cover;
 
     fn subjects(project: &Project) -> Vec<OfShape> {
-        OfShape::all(project).into_iter().filter(|shape| matches!(shape, OfShape::Link(_))).collect()
+        // What stands around is compared by its convex parts.
+        OfShape::all(project).into_iter().filter(|shape| !matches!(shape, OfShape::Obstacle(_))).collect()
     }
 
     fn inputs(planner: &mut Planner<'_>, subject: &OfShape) -> Result<Inputs, PlanError> {
-        Ok(Inputs { parts: planner.need::<ConvexParts>(subject)? })
+        let carried = matches!(subject, OfShape::Object(_));
+        Ok(Inputs { parts: planner.need::<ConvexParts>(subject)?, carried })
     }
 
     fn key_parts(inputs: &Inputs, _parts: &mut Parts) {
-        // Artefacts are added by the planner.
-        let Inputs { parts: _ } = inputs;
+        // Artefacts are added by the planner; who is carried matters for the defaults alone.
+        let Inputs { parts: _, carried: _ } = inputs;
     }
 
-    fn defaults(_inputs: &Inputs) -> CoverParameters {
-        CoverParameters::constants()
+    fn defaults(inputs: &Inputs) -> CoverParameters {
+        match inputs.carried {
+            false => CoverParameters { overshoot: 0.06, least: 0.003 },
+            true => CoverParameters { overshoot: 0.5, least: 0.01 },
+        }
     }
 
     fn encode(artefact: &Cover) -> Vec<u8> {

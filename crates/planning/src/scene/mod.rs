@@ -151,7 +151,7 @@ impl Scene {
         self.links[link].parts.iter().map(|part| &part.part)
     }
 
-    /// Convex parts that cover a body, in its frame.
+    /// Convex parts that cover a body, in its frame; of a point cloud or a height field the box around it.
     pub(crate) fn body_parts(&self, body: BodyIdx) -> impl Iterator<Item = &ConvexPart> {
         self.bodies[body].shape.cover().map(|part| &part.part)
     }
@@ -160,11 +160,6 @@ impl Scene {
     pub(crate) fn made_of(&self, body: BodyIdx) -> (impl Iterator<Item = &ConvexPart>, &[PlacedPile]) {
         let shape = &self.bodies[body].shape;
         (shape.parts.iter().map(|part| &part.part), &shape.piles)
-    }
-
-    /// The convex parts that cover a body, in its frame; of a point cloud or a height field the box around it.
-    pub fn parts_of(&self, body: BodyIdx) -> ConvexParts {
-        ConvexParts::new(self.body_parts(body).cloned().collect())
     }
 
     /// Bodies that have a shape: where they are, and what they look like.

@@ -1,13 +1,15 @@
-//! Link statistics: each joint in turn moves all that it carries through its limits, beside what is known of it.
+//! Link statistics: each joint in turn moves all that it carries through its limits, beside what is known of it; as a plot the
+//! cross-sections of the volumes that joints sweep.
 
 use nalgebra::{Point3, Vector3};
 use robotc_core::ids::Idx;
 use robotc_core::model::{JointMotion, LinkPoses};
 use robotc_core::{Kinematics, Pose};
-use robotc_kb::kinds::LinkStatistics;
+use robotc_kb::kinds::{LinkStatistics, SweptSection};
 use robotc_kb::project::OfRobot;
 use robotc_kb::{Knowledge, LoadError};
 
+use super::plot::Panel;
 use super::{Wanted, palette, resting};
 use crate::record::{Group, LineSet, Node, Recording};
 
@@ -74,6 +76,51 @@ pub(super) fn draw(
         }
     }
     Ok(1)
+}
+
+/// The volume that each joint sweeps, cut by a half plane through its axis, or across it for what slides.
+pub(super) fn plot(knowledge: &Knowledge, wanted: &Wanted<'_>) -> Result<Vec<Panel>, LoadError> {
+    let project = knowledge.graph().project();
+    if wanted.of::<OfRobot>(project).is_empty() {
+        return Ok(Vec::new());
+    }
+    let statistics = knowledge.load::<LinkStatistics>(&OfRobot)?;
+    let model = &project.robot().model;
+    let mut panels = Vec::new();
+    for (dof, row) in model.dofs().indices().zip(statistics.iter()) {
+        let name = &model.dofs()[dof].name;
+        let axes = match model.joints()[model.dofs()[dof].joint].motion {
+            JointMotion::Prismatic => ["x across the axis (m)", "y across the axis (m)"],
+            _ => ["distance from the axis (m)", "height along the axis (m)"],
+        };
+        for section in row.sections.iter().filter(|section| !section.rows.is_empty()) {
+            panels.push(panel(
+                format!("{name}: {:.3} m2, weight {:.3}", row.cross_section, row.weight),
+                axes,
+                section,
+            ));
+        }
+    }
+    Ok(panels)
+}
+
+fn panel(title: String, axes: [&'static str; 2], section: &SweptSection) -> Panel {
+    let rows = &section.rows;
+    let ends = |row: &robotc_kb::kinds::SectionRow| (row.first, row.first + row.swept.len() as i32);
+    let from = rows.iter().map(|row| ends(row).0).min().unwrap_or(0);
+    let to = rows.iter().map(|row| ends(row).1).max().unwrap_or(0);
+    let (bottom, top) = (rows.first().map_or(0, |row| row.height), rows.last().map_or(-1, |row| row.height));
+    let columns = (to - from) as usize;
+    let mut values = vec![0.0; columns * (top - bottom + 1) as usize];
+    for row in rows {
+        let start = (row.height - bottom) as usize * columns + (row.first - from) as usize;
+        for (value, swept) in values[start..].iter_mut().zip(&row.swept) {
+            *value = f64::from(*swept) / 64.0;
+        }
+    }
+    let corner = [from, bottom].map(|edges| f64::from(edges) * section.cell);
+    let scale = "share of the directions in which it is swept";
+    Panel { title, axes, corner, step: section.cell, columns, values, scale, marks: Vec::new() }
 }
 
 /// A circle about the origin, drawn from a moment on.

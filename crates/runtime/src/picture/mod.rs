@@ -45,8 +45,11 @@ pub const KINDS: &[(&str, Draw)] = &[
 type Plot = fn(&Knowledge, &Wanted<'_>) -> Result<Vec<plot::Panel>, LoadError>;
 
 /// What can be plotted, by name.
-pub const PLOTS: &[(&str, Plot)] =
-    &[("base_placement", base_placement::plot), ("reachability", reachability::plot)];
+pub const PLOTS: &[(&str, Plot)] = &[
+    ("base_placement", base_placement::plot),
+    ("link_statistics", link_statistics::plot),
+    ("reachability", reachability::plot),
+];
 
 /// Which subjects of a kind are drawn: those whose label contains a text; all of them when it is empty.
 pub struct Wanted<'a> {

@@ -36,22 +36,31 @@ pub struct Panel {
     pub marks: Vec<([f64; 2], String)>,
 }
 
-/// A drawing of panels side by side. Equal panels give equal text.
+/// Panels side by side before the next row begins.
+const ACROSS: usize = 4;
+
+/// A drawing of panels side by side, in rows. Equal panels give equal text.
 pub fn svg(panels: &[Panel]) -> String {
-    let sizes: Vec<(f64, f64)> = panels.iter().map(Panel::size).collect();
-    let width: f64 = sizes.iter().map(|(w, _)| LEFT + w + RIGHT).sum();
-    let height = sizes.iter().map(|(_, h)| ABOVE + h + BELOW).fold(0.0, f64::max);
+    let room = |panel: &Panel| (LEFT + panel.size().0 + RIGHT, ABOVE + panel.size().1 + BELOW);
+    let tall = |row: &[Panel]| row.iter().map(|panel| room(panel).1).fold(0.0, f64::max);
+    let wide = |row: &[Panel]| row.iter().map(|panel| room(panel).0).sum();
+    let height: f64 = panels.chunks(ACROSS).map(tall).sum();
+    let width = panels.chunks(ACROSS).map(wide).fold(0.0, f64::max);
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" \
          height=\"{height:.0}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#333\">\n\
          <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
     );
-    let mut left = 0.0;
-    for (panel, (w, _)) in panels.iter().zip(&sizes) {
-        writeln!(text, "<g transform=\"translate({:.1} {ABOVE})\">", left + LEFT).expect(WRITES);
-        panel.draw(&mut text);
-        text += "</g>\n";
-        left += LEFT + w + RIGHT;
+    let mut above = ABOVE;
+    for row in panels.chunks(ACROSS) {
+        let mut left = LEFT;
+        for panel in row {
+            writeln!(text, "<g transform=\"translate({left:.1} {above})\">").expect(WRITES);
+            panel.draw(&mut text);
+            text += "</g>\n";
+            left += room(panel).0;
+        }
+        above += tall(row);
     }
     text + "</svg>\n"
 }

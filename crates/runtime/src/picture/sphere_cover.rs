@@ -1,4 +1,4 @@
-//! Sphere covers: the balls of each link about its convex parts, where the link is at rest.
+//! Sphere covers: the balls of each link about its convex parts, where the link is at rest, and of objects where they stand.
 
 use std::sync::Arc;
 
@@ -31,7 +31,11 @@ pub(super) fn draw(
     recording.add_robot(&project.robot().model, &world_from_robot, &links);
     let (mut balls, mut farthest, mut drawn) = (0, 0.0_f64, 0);
     for shape in &shapes {
-        let OfShape::Link(link) = shape else { continue };
+        let world_from_shape = match (shape, project.task()) {
+            (OfShape::Link(link), _) => world_from_robot * links.root_from(*link),
+            (OfShape::Object(object), Some(task)) => task.objects[*object].world_from_object,
+            _ => continue,
+        };
         let cover = knowledge.load::<SphereCover>(shape)?;
         let parts = knowledge.load::<ConvexParts>(shape)?;
         let mut mesh = TriMesh::default();
@@ -39,8 +43,7 @@ pub(super) fn draw(
             add_ball(&mut mesh, &ball.centre, ball.outer);
         }
         let surface = recording.add_surface(Surface::smoothed(&Arc::new(mesh)));
-        let mut node =
-            Node::new(shape.label(project), Group::Reach, world_from_robot * links.root_from(*link));
+        let mut node = Node::new(shape.label(project), Group::Reach, world_from_shape);
         let material = Material::matt(palette::distinct(drawn));
         node.parts.push(Part { surface, material, node_from_part: Pose::identity() });
         recording.add_node(node);

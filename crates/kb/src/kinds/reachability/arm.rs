@@ -213,16 +213,19 @@ impl ArmAlone {
         };
         let mut found = None;
         let poses = [*base_from_tip; TOGETHER];
-        let mut at = 0;
+        let (mut at, middle) = (0, free.len() / 2);
+        // Care would find again what is not lost at first sight.
+        let mut care = !free.is_empty();
         while free.width() > 0 && found.is_none() && at < free.len() {
             let count = TOGETHER.min(free.len() - at);
             let rows: Vec<f64> = (at..at + count).flat_map(|i| free.row(i)).copied().collect();
             self.solver.solve_batch_once(&poses[..count], &rows, &mut batch);
             found = (0..count).find_map(|i| batch.solutions(i).find_map(|solution| fits(solution, scratch)));
+            care &= !(at..at + count).contains(&middle) || batch.solutions(middle - at).len() == 0;
             at += count;
         }
-        if found.is_none() && !free.is_empty() {
-            self.solver.solve(base_from_tip, free.row(free.len() / 2), &mut solutions);
+        if found.is_none() && care {
+            self.solver.solve(base_from_tip, free.row(middle), &mut solutions);
             found = solutions.iter().find_map(|solution| fits(solution, scratch));
         }
         (scratch.batch, scratch.solutions, scratch.joints) = (batch, solutions, joints);
