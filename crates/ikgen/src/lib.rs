@@ -44,6 +44,7 @@
 //! | `conic(a, b, c, d, e, f) -> c s { }` | for each angle with `a cos^2 + b cos sin + c sin^2 + d cos + e sin + f = 0` |
 //! | `octic(a0, a1, b1, ..., a4, b4) -> c s { }` | for each angle with `a0 + a1 cos q + b1 sin q + ... + a4 cos 4q + b4 sin 4q = 0` |
 //! | `six(...) -> c s c s c s c s c s c s { }` | for each way in which six turning joints close a loop; [`kernel::six`] says how |
+//! | `sweep(...) -> c s c s c s c s c s c s { }` | for each way in which five turning joints and one unknown that slides or moves several joints close a loop; [`kernel::sweep`] says how |
 //! | `quadratic(a, b, c) -> t { }` | for each length with `a t^2 + b t + c = 0` |
 //! | `zero(e, tolerance) { } else { }` | a *guard*: the first block where `e` is smaller in magnitude |
 //! | `first { } else { }` | the second block only if nothing emitted by the first was accepted |

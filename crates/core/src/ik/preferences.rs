@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::IkSolutions;
-use crate::model::{ChainMotion, SerialChain};
+use crate::model::{ChainJoint, ChainMotion, SerialChain};
 
 /// Rounding at a limit is not a violation.
 const LIMIT_SLACK: f64 = 1e-9;
@@ -14,7 +14,8 @@ const MOST_TURNS: f64 = 8.0;
 /// What values a variable of a chain may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VariableRange {
-    /// Turns have aliases 2 pi apart, lengths have none.
+    /// Turns have aliases 2 pi apart, lengths have none. An angle that another joint follows by a part of it counts as a length: a full
+    /// turn is another place.
     pub motion: ChainMotion,
     /// Smallest value, radians or metres; minus infinity when there is none.
     pub lower: f64,
@@ -25,7 +26,10 @@ pub struct VariableRange {
 impl VariableRange {
     /// The ranges of a chain's variables, as described.
     pub fn of(chain: &SerialChain) -> Vec<Self> {
-        let slides = |v| chain.joints.iter().any(|j| j.variable == v && j.motion == ChainMotion::Prismatic);
+        let slides = |v| {
+            let part = |j: &ChainJoint| j.motion == ChainMotion::Prismatic || j.multiplier.fract() != 0.0;
+            chain.joints.iter().any(|j| j.variable == v && part(j))
+        };
         let motion = |v| if slides(v) { ChainMotion::Prismatic } else { ChainMotion::Revolute };
         let variables = chain.variables.iter().enumerate();
         variables.map(|(v, x)| Self { motion: motion(v), lower: x.lower, upper: x.upper }).collect()

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::CAPACITY;
+use super::capacity;
 use crate::GoalType;
 use crate::ir::{Block, Expr, Program, RootKind, Stmt, Value};
 use crate::kernel::chain::Frame;
@@ -12,7 +12,7 @@ use crate::run::TrueChain;
 const KERNEL: [&str; 2] = [include_str!("kernel.c"), include_str!("kernel_general.c")];
 
 /// What each section calls, itself in the order of the file.
-const SECTIONS: [(&str, &[&str]); 31] = [
+const SECTIONS: [(&str, &[&str]); 35] = [
     ("sqrt", &[]),
     ("abs", &[]),
     ("finite", &[]),
@@ -38,9 +38,13 @@ const SECTIONS: [(&str, &[&str]); 31] = [
     ("bends", &["waves"]),
     ("octic", &["bends", "roots"]),
     ("vector", &["sqrt", "finite", "cos_sin"]),
-    ("elimination", &["vector", "waves"]),
-    ("null", &["elimination", "circle"]),
-    ("six", &["null", "bends"]),
+    ("elimination", &["vector"]),
+    ("null", &["elimination", "circle", "eigen"]),
+    ("joint", &["null"]),
+    ("whole", &["null", "waves"]),
+    ("six", &["joint", "whole", "bends"]),
+    ("piece", &["eigen", "cos_sin"]),
+    ("sweep", &["joint", "piece"]),
     ("chain", &["sqrt", "abs", "finite", "cos_sin"]),
     ("candidate", &["chain", "angle_of"]),
     ("family", &["chain"]),
@@ -143,6 +147,7 @@ fn about(program: &Program) -> String {
 fn header(program: &Program, chain: &TrueChain, name: &str) -> String {
     let guard = format!("{}_H", name.to_uppercase());
     let upper = name.to_uppercase();
+    let capacity = capacity(program);
     let (variables, free, links) = (program.chain_variables(), program.free.len(), chain.links.len());
     let goal = if program.goal == GoalType::default() {
         String::new()
@@ -162,7 +167,7 @@ fn header(program: &Program, chain: &TrueChain, name: &str) -> String {
         "{about}\n#ifndef {guard}\n#define {guard}\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n\
          /* Number of variables. */\n#define {upper}_VARIABLES {variables}\n\
          /* Number of variables whose value the caller gives. {given} */\n#define {upper}_GIVEN {free}\n\
-         /* Most solutions of one pose. */\n#define {upper}_CAPACITY {CAPACITY}\n\
+         /* Most solutions of one pose. */\n#define {upper}_CAPACITY {capacity}\n\
          /* Moving joints. */\n#define {upper}_LINKS {links}\n\n\
          /* A rigid transform: rotation rows, then position. */\ntypedef struct {{\n    double rotation[3][3];\n    double position[3];\n}} {name}_frame;\n\n\
          /* A moving joint whose axis is the z axis of its own frame. */\ntypedef struct {{\n    {name}_frame previous_from_joint;\n    \
@@ -230,9 +235,11 @@ fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> Strin
     let held = (0..program.variables).map(|v| program.free.contains(&v)).collect();
     let _ = write!(
         out,
-        "{joints}/* Which variables are lengths, and which are given. */\nstatic const int ik_slides[IK_VARIABLES] = {{ {} }};\n\
+        "{joints}/* Which variables are lengths, of which a full turn changes nothing, and which are given. */\n\
+         static const int ik_slides[IK_VARIABLES] = {{ {} }};\nstatic const int ik_round[IK_VARIABLES] = {{ {} }};\n\
          static const int ik_held[IK_VARIABLES] = {{ {} }};\n\n",
         flags(chain.slides.clone()),
+        flags((0..program.variables).map(|v| chain.arm(&[]).is_round(v)).collect()),
         flags(held)
     );
     described(chain, name, &mut out);
@@ -352,14 +359,15 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
             Stmt::Let { var, value } => {
                 let _ = writeln!(out, "{pad}const double {} = {};", p.name(*var), text(p, *value));
             }
-            Stmt::ForEach { kind: RootKind::Six, args, out: names, body } => {
+            Stmt::ForEach { kind, args, out: names, body } if kind.is_joint() => {
                 *loops += 1;
                 let k = *loops;
                 numbers(p, args, k, &pad, out);
                 let _ = write!(
                     out,
-                    "{pad}ik_candidates roots{k};\n{pad}int i{k};\n{pad}ik_six(numbers{k}, slack - {:?}, &roots{k});\n\
+                    "{pad}ik_candidates roots{k};\n{pad}int i{k};\n{pad}ik_{}(numbers{k}, slack - {:?}, &roots{k});\n\
                      {pad}for (i{k} = 0; i{k} < roots{k}.count; i{k}++) {{\n",
+                    kind.word(),
                     p.slack
                 );
                 let mut inner = String::new();

@@ -628,7 +628,7 @@ static int ik_settle(const ik_sink *sink, double steps[IK_VARIABLES][2], double 
     if (distance <= 1e-13) return 1;
     if (!(ik_polish(sink->chain, sink->pose, values, ik_held) < 1e-9)) return 0;
     for (i = 0; i < IK_VARIABLES; i++) {
-        if (ik_slides[i] || ik_held[i]) continue;
+        if (!ik_round[i] || ik_held[i]) continue;
         while (values[i] > 3.141592653589793) values[i] -= 6.283185307179586;
         while (values[i] <= -3.141592653589793) values[i] += 6.283185307179586;
     }
@@ -651,7 +651,7 @@ static void ik_offer(ik_sink *sink, double steps[IK_VARIABLES][2], double values
         const double *other = sink->out->values[k];
         for (i = 0; i < IK_JOINTS; i++) {
             double gap = ik_abs(values[i] - other[i]);
-            if (gap >= 1e-7 && (ik_slides[i] || ik_abs(gap - 6.283185307179586) >= 1e-7)) break;
+            if (gap >= 1e-7 && (!ik_round[i] || ik_abs(gap - 6.283185307179586) >= 1e-7)) break;
         }
         if (i == IK_JOINTS) return;
     }

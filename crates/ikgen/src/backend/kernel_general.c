@@ -537,9 +537,11 @@ static void ik_functions(const ik_line *line, ik_vector origin, double scale, do
     out[7] = pl;
 }
 
-/* Takes all columns of `right` but the first to its first eight rows, by reflections of both sides. */
-static void ik_clear_right(double left[14][27], double right[14][9])
+/* Takes all columns of `right` but the first to its first eight rows, by reflections of both sides; returns the square of the volume that
+   they span. The left side has rows of this width. */
+static double ik_clear_right(double *left, int width, double right[14][9])
 {
+    double volume = 1.0;
     int done[9] = { 1 }, step, pivot, r, c;
     for (step = 0; step < 8; step++) {
         double squares[9] = { 0.0 }, mirror[14] = { 0.0 }, of_left[27] = { 0.0 }, of_right[9] = { 0.0 }, most = -1.0, head, factor, by;
@@ -551,52 +553,55 @@ static void ik_clear_right(double left[14][27], double right[14][9])
                 most = squares[c];
             }
         done[pivot] = 1;
-        if (most < 1e-24) return;
+        if (most < 1e-24) break;
+        volume *= most;
         for (r = step; r < 14; r++) mirror[r] = right[r][pivot];
         head = mirror[step];
         mirror[step] += head < 0.0 ? -ik_sqrt(most) : ik_sqrt(most);
         factor = 1.0 / (most + ik_abs(head) * ik_sqrt(most));
         for (r = step; r < 14; r++) {
-            for (c = 0; c < 27; c++) of_left[c] += mirror[r] * left[r][c];
+            for (c = 0; c < width; c++) of_left[c] += mirror[r] * left[width * r + c];
             for (c = 0; c < 9; c++) of_right[c] += mirror[r] * right[r][c];
         }
         for (r = step; r < 14; r++) {
             by = factor * mirror[r];
-            for (c = 0; c < 27; c++) left[r][c] -= by * of_left[c];
+            for (c = 0; c < width; c++) left[width * r + c] -= by * of_left[c];
             for (c = 0; c < 9; c++) right[r][c] -= by * of_right[c];
         }
     }
+    return volume;
 }
 
-/* The equations without q1 and q2, for the loop e1 ... e6 = goal, by Raghavan and Roth's elimination. The half tangent is that of q4, or
-   of q5 if `swapped`. */
-static void ik_eliminate(const ik_line lines[6], const ik_motion *goal, int swapped, ik_six_rows *out)
+/* The turns at which sides are sampled, and the same for the angle that is eliminated by its half tangent. */
+static void ik_places(ik_turn plain[3], ik_turn shifted[3])
 {
-    double left[14][27], right[14][9], values[14], size = 0.0, scale;
-    ik_turn plain[3], shifted[3];
-    ik_vector origin = lines[2].point;
-    ik_line last = ik_line_moved(goal, &lines[5]);
-    int i, j, k, row;
+    int i;
     plain[0] = ik_turn_of(1.0, 0.0);
     plain[1] = ik_turn_of(0.0, 1.0);
     plain[2] = ik_turn_of(-1.0, 0.0);
     for (i = 0; i < 3; i++) shifted[i] = ik_sum(plain[i], ik_start());
-    for (i = 0; i < 6; i++) {
+}
+
+/* The unit of length in which lines are measured from a point. */
+static double ik_scale_of(const ik_line *lines, int count, ik_vector origin)
+{
+    double size = 0.0;
+    int i;
+    for (i = 0; i < count; i++) {
         ik_vector d = ik_minus(lines[i].point, origin);
         if (ik_dot(d, d) > size) size = ik_dot(d, d);
     }
-    scale = 1.0 / ik_sqrt(size);
-    for (k = 0; k < 3; k++) {
-        ik_line after5 = ik_line_turned(&lines[4], &lines[5], swapped ? shifted[k] : plain[k]);
-        for (j = 0; j < 3; j++) {
-            ik_line after4 = ik_line_turned(&lines[3], &after5, swapped ? plain[j] : shifted[j]);
-            for (i = 0; i < 3; i++) {
-                ik_line after3 = ik_line_turned(&lines[2], &after4, plain[i]);
-                ik_functions(&after3, origin, scale, values);
-                for (row = 0; row < 14; row++) left[row][swapped ? 9 * i + 3 * k + j : 9 * i + 3 * j + k] = values[row];
-            }
-        }
-    }
+    return 1.0 / ik_sqrt(size);
+}
+
+/* The right side of the fourteen equations: coefficients of the products of 1, c, s of q1 and q2. */
+static void ik_right_side(const ik_line lines[6], const ik_motion *goal, ik_vector origin, double scale, double right[14][9])
+{
+    double values[14];
+    ik_turn plain[3], shifted[3];
+    ik_line last = ik_line_moved(goal, &lines[5]);
+    int i, j, row;
+    ik_places(plain, shifted);
     for (i = 0; i < 3; i++) {
         ik_line before1 = ik_line_turned(&lines[0], &last, ik_back(plain[i]));
         for (j = 0; j < 3; j++) {
@@ -608,22 +613,19 @@ static void ik_eliminate(const ik_line lines[6], const ik_motion *goal, int swap
     for (row = 0; row < 14; row++) {
         ik_fit(right[row], 9, 1);
         ik_fit(right[row], 9, 3);
-        ik_fit(left[row], 27, 1);
-        ik_fit(left[row], 27, 3);
-        ik_fit(left[row], 27, 9);
-        left[row][0] -= right[row][0];
     }
-    ik_clear_right(left, right);
-    for (row = 0; row < 6; row++)
-        for (i = 0; i < 3; i++)
-            for (k = 0; k < 3; k++) {
-                /* (1 + t^2) (one + cos c + sin s) */
-                const double *from = &left[8 + row][9 * i + k];
-                double *to = &out->rows[row][9 * i + k];
-                to[0] = from[0] - from[3];
-                to[3] = 2.0 * from[6];
-                to[6] = from[0] + from[3];
-            }
+}
+
+/* From the coefficients of 1, c, s to those of t^2, t, 1, three of each. */
+static void ik_by_half_tangent(const double from[9], double to[9])
+{
+    int k;
+    for (k = 0; k < 3; k++) {
+        /* (1 + t^2) (one + cos c + sin s) */
+        to[k] = from[k] - from[3 + k];
+        to[3 + k] = 2.0 * from[6 + k];
+        to[6 + k] = from[k] + from[3 + k];
+    }
 }
 
 /* The six equations at one value of q3: three forms in 1, c, s of the third angle, with t^2, t and 1. */
@@ -694,99 +696,7 @@ static double ik_reduced(const ik_six_rows *six, ik_turn turn, double left[36])
     return sign * first * second;
 }
 
-/* How the sampled angle is looked at: tan((q3 - centre) / 2) = width tan(u / 2). A determinant is a trigonometric polynomial of u as
-   well; where it is all but zero over a part of the circle, a small width shows what is there. */
-typedef struct {
-    ik_turn centre;
-    double width;
-} ik_view;
-
-/* The angle at u, and the square of the stretch there. */
-static ik_turn ik_turn_in_view(const ik_view *view, double u, double *square)
-{
-    ik_turn half = ik_turn_by(0.5 * u);
-    double c = half.c, s = view->width * half.s;
-    *square = c * c + s * s;
-    return ik_sum(view->centre, ik_turn_of((c * c - s * s) / *square, 2.0 * c * s / *square));
-}
-
-/* The determinant at u, as a trigonometric polynomial of this degree. */
-static double ik_value_in_view(const ik_view *view, const ik_six_rows *six, int degree, double u)
-{
-    double square, rows[36], sign = 1.0, factor, pivots, value;
-    ik_turn turn = ik_turn_in_view(view, u, &square);
-    int i;
-    factor = ik_reduced(six, turn, rows);
-    pivots = ik_clear(rows, 6, 6, &sign);
-    value = sign * factor * pivots;
-    for (i = 0; i < degree; i++) value *= square;
-    return value;
-}
-
-/* The waves of the determinant, from samples at equal steps. */
-static ik_waves ik_waves_in_view(const ik_view *view, const ik_six_rows *six, int degree)
-{
-    ik_waves waves = { { { 0.0 } }, 0, 0.0, 0.0 };
-    double samples[IK_SAMPLES], table[IK_SAMPLES][2], step;
-    int n = 2 * degree + 1, at = 0, i, k, place;
-    step = 6.283185307179586 / (double)n;
-    for (i = 0; i < n; i++) samples[i] = ik_value_in_view(view, six, degree, 6.283185307179586 * (double)i / (double)n);
-    for (i = 0; i < n; i++) {
-        ik_cos_sin(step * (double)i, table[i]);
-        if (ik_abs(samples[i]) > ik_abs(samples[at])) at = i;
-    }
-    for (k = 0; k <= degree; k++) {
-        for (place = 0, i = 0; i < n; i++) {
-            waves.d[k][0] += samples[i] * table[place][0];
-            waves.d[k][1] -= samples[i] * table[place][1];
-            place = (place + k) % n;
-        }
-        waves.d[k][0] /= (double)n;
-        waves.d[k][1] /= (double)n;
-    }
-    waves.degree = degree;
-    waves.largest = ik_abs(samples[at]);
-    waves.start = step * (double)at - 3.141592653589793;
-    return waves;
-}
-
-/* Value and derivative. */
-static double ik_waves_at(const ik_waves *waves, double angle, double *slope)
-{
-    ik_turn turn = ik_turn_by(angle);
-    double x = 1.0, y = 0.0, value = waves->d[0][0], next;
-    int k;
-    *slope = 0.0;
-    for (k = 1; k <= waves->degree; k++) {
-        next = x * turn.c - y * turn.s;
-        y = x * turn.s + y * turn.c;
-        x = next;
-        value += 2.0 * (waves->d[k][0] * x - waves->d[k][1] * y);
-        *slope -= 2.0 * (double)k * (waves->d[k][0] * y + waves->d[k][1] * x);
-    }
-    return value;
-}
-
 /* == null == */
-/* A root of the determinant near that of its waves, which are exact to rounding of the largest sample: Newton's method with the
-   determinant itself and the slope of the waves, only where rounding matters. */
-static double ik_refined(const ik_six_rows *six, const ik_waves *waves, const ik_view *view, double start)
-{
-    double q = start, slope, doubt, change;
-    int i;
-    for (i = 0; i < 8; i++) {
-        ik_waves_at(waves, q, &slope);
-        doubt = 1e-15 * waves->largest / ik_abs(slope);
-        if (i == 0 && doubt < 1e-13) break;
-        change = -ik_value_in_view(view, six, waves->degree, q) / slope;
-        if (!(ik_abs(change) < 0.05)) break;
-        q += change;
-        /* What is left is about this part of the change. */
-        if (ik_abs(change) * (doubt + ik_abs(change)) < 1e-13) break;
-    }
-    return q;
-}
-
 /* The null space of the reduced system: vectors (t y, y); returns how many there are, three at most. */
 static int ik_null_space(const ik_six_rows *six, ik_turn turn, int most, double nothing, double vectors[3][6])
 {
@@ -837,13 +747,6 @@ static int ik_null_space(const ik_six_rows *six, ik_turn turn, int most, double 
 }
 
 /* Half of a null vector. */
-/* Whether only one null vector is anywhere near: of two solutions that share the angle there are two. */
-static int ik_is_alone(const ik_six_rows *six, ik_turn turn)
-{
-    double vectors[3][6];
-    return ik_null_space(six, turn, 3, 1e-3, vectors) == 1;
-}
-
 static ik_vector ik_half_of(const double *v) { return ik_vector_of(v[0], v[1], v[2]); }
 
 /* The turn along the last two of y, whichever sign it has. */
@@ -961,11 +864,8 @@ static int ik_several(const ik_six_rows *six, ik_turn turn, ik_turn pairs[6][2],
     return n;
 }
 
-/* == six == */
-/* Six revolute joints in general. The loop is e1 e2 e3 e4 e5 e6 = G, each e a turn about a line. Fourteen equations, each linear in the
-   cosine and sine of every angle (Raghavan and Roth, 1993), leave six in q3, q4 and q5; they and their multiples by the half tangent of
-   q4 are a square system, whose determinant is a trigonometric polynomial of q3. Its roots are eigenvalues, its null vectors q4 and
-   q5, what remains of the loop q2, q1 and q6. Any joint can be first in the loop, and the loop can be run backwards: an order. */
+/* == joint == */
+/* What loops of six unknowns have in common. */
 #define IK_CANDIDATES 48
 
 typedef struct {
@@ -1087,20 +987,15 @@ static ik_motion ik_nudged(const ik_motion *goal, double size)
     return out;
 }
 
-/* Adds a candidate: the sampled turn, then the one that was eliminated by its half tangent and the one beside it. */
-static void ik_add_candidate(const ik_loop *loop, ik_turn turn, const ik_turn pair[2], ik_candidates *found)
+/* Adds a candidate, unless one is nearer to it in all cosines and sines: that is the same, found in two orders. */
+static void ik_add_turns(const ik_turn turns[6], ik_candidates *found)
 {
-    ik_turn middle[3], turns[6];
     int i, k;
-    middle[0] = turn;
-    middle[1] = pair[loop->swapped ? 1 : 0];
-    middle[2] = pair[loop->swapped ? 0 : 1];
-    if (found->count >= IK_CANDIDATES || !ik_close(loop, middle, turns)) return;
-    /* Those that are nearer to each other in all cosines and sines are one, found in two orders. */
+    if (found->count >= IK_CANDIDATES) return;
     for (k = 0; k < found->count; k++) {
         double gap = 0.0, one;
         for (i = 0; i < 6; i++) {
-            const ik_turn *other = &found->turns[k][loop->joints[i]];
+            const ik_turn *other = &found->turns[k][i];
             one = ik_abs(other->c - turns[i].c);
             if (one > gap) gap = one;
             one = ik_abs(other->s - turns[i].s);
@@ -1108,12 +1003,163 @@ static void ik_add_candidate(const ik_loop *loop, ik_turn turn, const ik_turn pa
         }
         if (!(gap > 1e-9)) return;
     }
-    for (i = 0; i < 6; i++) found->turns[found->count][loop->joints[i]] = turns[i];
+    for (i = 0; i < 6; i++) found->turns[found->count][i] = turns[i];
     found->count++;
 }
 
 /* Roots whose imaginary part is smaller may be real: pairs that fall together lose half of their digits. */
 #define IK_NEARLY_REAL 1e-3
+
+/* == whole == */
+/* The equations without q1 and q2, for the loop e1 ... e6 = goal, by Raghavan and Roth's elimination. The half tangent is that of q4, or
+   of q5 if `swapped`. */
+static void ik_eliminate(const ik_line lines[6], const ik_motion *goal, int swapped, ik_six_rows *out)
+{
+    double left[14][27], right[14][9], values[14], scale = ik_scale_of(lines, 6, lines[2].point);
+    ik_turn plain[3], shifted[3];
+    ik_vector origin = lines[2].point;
+    int i, j, k, row;
+    ik_places(plain, shifted);
+    for (k = 0; k < 3; k++) {
+        ik_line after5 = ik_line_turned(&lines[4], &lines[5], swapped ? shifted[k] : plain[k]);
+        for (j = 0; j < 3; j++) {
+            ik_line after4 = ik_line_turned(&lines[3], &after5, swapped ? plain[j] : shifted[j]);
+            for (i = 0; i < 3; i++) {
+                ik_line after3 = ik_line_turned(&lines[2], &after4, plain[i]);
+                ik_functions(&after3, origin, scale, values);
+                for (row = 0; row < 14; row++) left[row][swapped ? 9 * i + 3 * k + j : 9 * i + 3 * j + k] = values[row];
+            }
+        }
+    }
+    ik_right_side(lines, goal, origin, scale, right);
+    for (row = 0; row < 14; row++) {
+        ik_fit(left[row], 27, 1);
+        ik_fit(left[row], 27, 3);
+        ik_fit(left[row], 27, 9);
+        left[row][0] -= right[row][0];
+    }
+    ik_clear_right(left[0], 27, right);
+    for (row = 0; row < 6; row++)
+        for (i = 0; i < 3; i++) ik_by_half_tangent(&left[8 + row][9 * i], &out->rows[row][9 * i]);
+}
+
+/* How the sampled angle is looked at: tan((q3 - centre) / 2) = width tan(u / 2). A determinant is a trigonometric polynomial of u as
+   well; where it is all but zero over a part of the circle, a small width shows what is there. */
+typedef struct {
+    ik_turn centre;
+    double width;
+} ik_view;
+
+/* The angle at u, and the square of the stretch there. */
+static ik_turn ik_turn_in_view(const ik_view *view, double u, double *square)
+{
+    ik_turn half = ik_turn_by(0.5 * u);
+    double c = half.c, s = view->width * half.s;
+    *square = c * c + s * s;
+    return ik_sum(view->centre, ik_turn_of((c * c - s * s) / *square, 2.0 * c * s / *square));
+}
+
+/* The determinant at u, as a trigonometric polynomial of this degree. */
+static double ik_value_in_view(const ik_view *view, const ik_six_rows *six, int degree, double u)
+{
+    double square, rows[36], sign = 1.0, factor, pivots, value;
+    ik_turn turn = ik_turn_in_view(view, u, &square);
+    int i;
+    factor = ik_reduced(six, turn, rows);
+    pivots = ik_clear(rows, 6, 6, &sign);
+    value = sign * factor * pivots;
+    for (i = 0; i < degree; i++) value *= square;
+    return value;
+}
+
+/* The waves of the determinant, from samples at equal steps. */
+static ik_waves ik_waves_in_view(const ik_view *view, const ik_six_rows *six, int degree)
+{
+    ik_waves waves = { { { 0.0 } }, 0, 0.0, 0.0 };
+    double samples[IK_SAMPLES], table[IK_SAMPLES][2], step;
+    int n = 2 * degree + 1, at = 0, i, k, place;
+    step = 6.283185307179586 / (double)n;
+    for (i = 0; i < n; i++) samples[i] = ik_value_in_view(view, six, degree, 6.283185307179586 * (double)i / (double)n);
+    for (i = 0; i < n; i++) {
+        ik_cos_sin(step * (double)i, table[i]);
+        if (ik_abs(samples[i]) > ik_abs(samples[at])) at = i;
+    }
+    for (k = 0; k <= degree; k++) {
+        for (place = 0, i = 0; i < n; i++) {
+            waves.d[k][0] += samples[i] * table[place][0];
+            waves.d[k][1] -= samples[i] * table[place][1];
+            place = (place + k) % n;
+        }
+        waves.d[k][0] /= (double)n;
+        waves.d[k][1] /= (double)n;
+    }
+    waves.degree = degree;
+    waves.largest = ik_abs(samples[at]);
+    waves.start = step * (double)at - 3.141592653589793;
+    return waves;
+}
+
+/* Value and derivative. */
+static double ik_waves_at(const ik_waves *waves, double angle, double *slope)
+{
+    ik_turn turn = ik_turn_by(angle);
+    double x = 1.0, y = 0.0, value = waves->d[0][0], next;
+    int k;
+    *slope = 0.0;
+    for (k = 1; k <= waves->degree; k++) {
+        next = x * turn.c - y * turn.s;
+        y = x * turn.s + y * turn.c;
+        x = next;
+        value += 2.0 * (waves->d[k][0] * x - waves->d[k][1] * y);
+        *slope -= 2.0 * (double)k * (waves->d[k][0] * y + waves->d[k][1] * x);
+    }
+    return value;
+}
+
+/* A root of the determinant near that of its waves, which are exact to rounding of the largest sample: Newton's method with the
+   determinant itself and the slope of the waves, only where rounding matters. */
+static double ik_refined(const ik_six_rows *six, const ik_waves *waves, const ik_view *view, double start)
+{
+    double q = start, slope, doubt, change;
+    int i;
+    for (i = 0; i < 8; i++) {
+        ik_waves_at(waves, q, &slope);
+        doubt = 1e-15 * waves->largest / ik_abs(slope);
+        if (i == 0 && doubt < 1e-13) break;
+        change = -ik_value_in_view(view, six, waves->degree, q) / slope;
+        if (!(ik_abs(change) < 0.05)) break;
+        q += change;
+        /* What is left is about this part of the change. */
+        if (ik_abs(change) * (doubt + ik_abs(change)) < 1e-13) break;
+    }
+    return q;
+}
+
+/* Whether only one null vector is anywhere near: of two solutions that share the angle there are two. */
+static int ik_is_alone(const ik_six_rows *six, ik_turn turn)
+{
+    double vectors[3][6];
+    return ik_null_space(six, turn, 3, 1e-3, vectors) == 1;
+}
+
+/* == six == */
+/* Six revolute joints in general. The loop is e1 e2 e3 e4 e5 e6 = G, each e a turn about a line. Fourteen equations, each linear in the
+   cosine and sine of every angle (Raghavan and Roth, 1993), leave six in q3, q4 and q5; they and their multiples by the half tangent of
+   q4 are a square system, whose determinant is a trigonometric polynomial of q3. Its roots are eigenvalues, its null vectors q4 and
+   q5, what remains of the loop q2, q1 and q6. Any joint can be first in the loop, and the loop can be run backwards: an order. */
+
+/* Adds a candidate: the sampled turn, then the one that was eliminated by its half tangent and the one beside it. */
+static void ik_add_candidate(const ik_loop *loop, ik_turn turn, const ik_turn pair[2], ik_candidates *found)
+{
+    ik_turn middle[3], turns[6], placed[6];
+    int i;
+    middle[0] = turn;
+    middle[1] = pair[loop->swapped ? 1 : 0];
+    middle[2] = pair[loop->swapped ? 0 : 1];
+    if (!ik_close(loop, middle, turns)) return;
+    for (i = 0; i < 6; i++) placed[loop->joints[i]] = turns[i];
+    ik_add_turns(placed, found);
+}
 
 /* Where the polynomial is smaller than this part of the largest sample, rounding decides where its roots are and which are real. */
 #define IK_FLAT 1e-11
@@ -1268,4 +1314,407 @@ static void ik_six(const double numbers[57], double slack, ik_candidates *found)
     if (slack > 0.0) goal = ik_nudged(&goal, 0.1 * slack);
     for (i = 48; i < 57; i += 3)
         if (numbers[i + 1] > 0.0 && ik_solve_order(lines, &goal, &numbers[i], slack, found) && !(slack > 0.0)) break;
+}
+
+/* == piece == */
+/* A smooth function on an interval, by its samples at Chebyshev nodes: coefficients of Chebyshev's polynomials. */
+#define IK_NODES (IK_SIZE + 1)
+
+typedef struct {
+    double a[IK_NODES];
+    double centre, half, largest;
+} ik_piece;
+
+/* Cosines of the multiples of the angle between half a node and the next. */
+static void ik_cosines(double table[4 * IK_NODES])
+{
+    double turn[2];
+    int m;
+    for (m = 0; m < 4 * IK_NODES; m++) {
+        ik_cos_sin((double)m * (3.141592653589793 / (double)(2 * IK_NODES)), turn);
+        table[m] = turn[0];
+    }
+}
+
+/* From the samples to the coefficients, for the interval of this width from `start` on. */
+static void ik_piece_of(const double table[4 * IK_NODES], double start, double width, const double samples[IK_NODES], ik_piece *piece)
+{
+    int j, k;
+    piece->half = 0.5 * width;
+    piece->centre = start + piece->half;
+    piece->largest = 0.0;
+    for (j = 0; j < IK_NODES; j++) {
+        double sum = 0.0;
+        for (k = 0; k < IK_NODES; k++) sum += samples[k] * table[j * (2 * k + 1) % (4 * IK_NODES)];
+        piece->a[j] = sum * ((j == 0 ? 1.0 : 2.0) / (double)IK_NODES);
+        if (ik_abs(piece->a[j]) > piece->largest) piece->largest = ik_abs(piece->a[j]);
+    }
+}
+
+/* The last coefficients: what the polynomial may be off. */
+static double ik_rest_of_piece(const ik_piece *piece)
+{
+    return ik_abs(piece->a[IK_SIZE - 1]) + ik_abs(piece->a[IK_SIZE]);
+}
+
+static double ik_slope_of_piece(const ik_piece *piece, double x)
+{
+    double t = (x - piece->centre) / piece->half, before = 0.0, u = 1.0, sum = 0.0, next;
+    int k;
+    for (k = 1; k < IK_NODES; k++) {
+        sum += piece->a[k] * (double)k * u;
+        next = 2.0 * t * u - before;
+        before = u;
+        u = next;
+    }
+    return sum / piece->half;
+}
+
+/* Places and imaginary parts of the roots on the interval, or as near to it as `margin`: eigenvalues of the colleague matrix (Good, 1961;
+   Boyd, 2002). Returns how many there are. */
+static int ik_roots_of_piece(const ik_piece *piece, double margin, double found[IK_SIZE][2])
+{
+    double colleague[IK_SIZE][IK_SIZE] = { { 0.0 } }, values[IK_SIZE][2], others = 0.0, least, last, base, power = 1.0, x, y;
+    int k, count, kept = 0;
+    for (k = 1; k < IK_NODES; k++) others += ik_abs(piece->a[k]);
+    if (!(piece->largest > 0.0 && ik_finite(piece->largest)) || ik_abs(piece->a[0]) > 1.01 * others) return 0;
+    /* What is less is rounding. */
+    least = 1e-14 * piece->largest;
+    last = ik_abs(piece->a[IK_SIZE]) > least ? piece->a[IK_SIZE] : least;
+    /* The basis is scaled by powers of the sixteenth root, which balances the matrix. */
+    base = ik_sqrt(ik_sqrt(ik_sqrt(ik_sqrt(piece->largest / ik_abs(last)))));
+    for (k = IK_SIZE - 1; k >= 0; k--) {
+        colleague[k][IK_SIZE - 1] = -0.5 * piece->a[k] / last * power;
+        power /= base;
+    }
+    for (k = 1; k < IK_SIZE; k++) {
+        colleague[k][k - 1] += k == 1 ? base : 0.5 * base;
+        colleague[k - 1][k] += 0.5 / base;
+    }
+    count = ik_eigenvalues(colleague, IK_SIZE, values);
+    for (k = 0; k < count; k++) {
+        x = piece->half * values[k][0];
+        y = piece->half * values[k][1];
+        if (ik_abs(x) <= piece->half + margin && ik_abs(y) <= margin) {
+            found[kept][0] = piece->centre + x;
+            found[kept][1] = y;
+            kept++;
+        }
+    }
+    return kept;
+}
+
+/* == sweep == */
+/* Six unknowns of a loop of which five turn a joint each, while one slides, or moves several joints at once. For each value of that one the
+   other five close the loop only by chance: with a sixth joint among them that does not turn, the elimination gives a determinant that
+   vanishes there. It is swept over all values, interval after interval, each so short that a polynomial is as good. */
+#define IK_MOST_LINES 9
+
+/* The right side of a loop: six combinations of the fourteen equations that hold whatever q1 and q2 are, what is constant on the right
+   side, and the square of the volume of its columns: with it as a factor the determinant is a smooth function of the loop. */
+typedef struct { double rows[6][14], constant[14], volume; } ik_shadow;
+
+static void ik_shadow_of(const ik_line lines[6], const ik_motion *goal, ik_vector origin, double scale, ik_shadow *out)
+{
+    double right[14][9], all[14][14] = { { 0.0 } };
+    int i, k;
+    ik_right_side(lines, goal, origin, scale, right);
+    for (i = 0; i < 14; i++) {
+        out->constant[i] = right[i][0];
+        all[i][i] = 1.0;
+    }
+    out->volume = ik_clear_right(all[0], 14, right);
+    for (i = 0; i < 6; i++)
+        for (k = 0; k < 14; k++) out->rows[i][k] = all[8 + i][k];
+}
+
+/* As ik_eliminate, of a loop whose third joint does not turn: the six equations hold for q3 at zero. */
+static void ik_eliminate_still(const ik_line lines[6], int swapped, ik_vector origin, double scale, const ik_shadow *shadow, ik_six_rows *out)
+{
+    double left[14][9], values[14], six[9];
+    ik_turn plain[3], shifted[3];
+    int j, k, row;
+    ik_places(plain, shifted);
+    for (k = 0; k < 3; k++) {
+        ik_line after5 = ik_line_turned(&lines[4], &lines[5], swapped ? shifted[k] : plain[k]);
+        for (j = 0; j < 3; j++) {
+            ik_line after4 = ik_line_turned(&lines[3], &after5, swapped ? plain[j] : shifted[j]);
+            ik_functions(&after4, origin, scale, values);
+            for (row = 0; row < 14; row++) left[row][swapped ? 3 * k + j : 3 * j + k] = values[row];
+        }
+    }
+    for (row = 0; row < 14; row++) {
+        ik_fit(left[row], 9, 1);
+        ik_fit(left[row], 9, 3);
+        left[row][0] -= shadow->constant[row];
+    }
+    for (row = 0; row < 6; row++) {
+        for (k = 0; k < 9; k++) six[k] = 0.0;
+        for (j = 0; j < 14; j++)
+            for (k = 0; k < 9; k++) six[k] += shadow->rows[row][j] * left[j][k];
+        for (k = 0; k < 27; k++) out->rows[row][k] = 0.0;
+        ik_by_half_tangent(six, out->rows[row]);
+    }
+}
+
+/* The joints of a loop, base to tip: their lines, how they move (zero for none, one for an unknown turn, two and three for a turn and a
+   slide by the swept variable), and how far for each unit of that. */
+typedef struct {
+    ik_line lines[IK_MOST_LINES];
+    int kinds[IK_MOST_LINES];
+    double ratios[IK_MOST_LINES];
+    ik_motion goal;
+    ik_vector origin;
+    double scale;
+    int turns;
+    /* How many of the five come before the swept joints, -1 if one is among these. Then the right side is constant in some orders. */
+    int before;
+    int is_constant;
+    ik_shadow shadow;
+} ik_swept;
+
+/* A motion after another. */
+static ik_motion ik_after(const ik_motion *motion, const ik_motion *first)
+{
+    ik_motion out;
+    int i, k;
+    for (i = 0; i < 3; i++) {
+        ik_vector column = ik_vector_moved(motion, ik_vector_of(first->rows[0].x[i], first->rows[1].x[i], first->rows[2].x[i]));
+        for (k = 0; k < 3; k++) out.rows[k].x[i] = column.x[k];
+    }
+    out.place = ik_plus(ik_vector_moved(motion, first->place), motion->place);
+    return out;
+}
+
+/* The motion of turning about a line. */
+static ik_motion ik_turning(const ik_line *line, ik_turn turn)
+{
+    ik_motion out;
+    int i, k;
+    for (i = 0; i < 3; i++) {
+        ik_vector column = ik_turned(line, ik_vector_of(i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0), turn);
+        for (k = 0; k < 3; k++) out.rows[k].x[i] = column.x[k];
+    }
+    out.place = ik_plus(line->point, ik_turned(line, ik_minus(ik_vector_of(0.0, 0.0, 0.0), line->point), turn));
+    return out;
+}
+
+/* The number of the joint that does not turn: the third in the order. */
+static int ik_still_joint(int code)
+{
+    int place = (code % 12 / 2 + 2) % 6;
+    return code >= 12 ? 5 - place : place;
+}
+
+/* The loop at a value of the swept variable, in an order: the other five, and the joint that does not turn. */
+static ik_loop ik_swept_loop(const ik_swept *swept, double x, int code)
+{
+    ik_motion moved, step, goal;
+    ik_line lines[6];
+    int still = ik_still_joint(code), count = 0, i;
+    for (i = 0; i < 3; i++) moved.rows[i] = ik_vector_of(i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0);
+    moved.place = ik_vector_of(0.0, 0.0, 0.0);
+    for (i = 0; i < 6; i++) lines[i] = swept->lines[0];
+    for (i = 0; i < IK_MOST_LINES; i++) {
+        double by = swept->ratios[i] * x;
+        if (swept->kinds[i] == 1) {
+            if (count == still) count++;
+            lines[count++] = ik_line_moved(&moved, &swept->lines[i]);
+        } else if (swept->kinds[i] == 2) {
+            step = ik_turning(&swept->lines[i], ik_turn_by(by));
+            moved = ik_after(&moved, &step);
+        } else if (swept->kinds[i] == 3) {
+            moved.place = ik_plus(ik_vector_moved(&moved, ik_scaled(swept->lines[i].direction, by)), moved.place);
+        }
+    }
+    step = ik_inverse(&moved);
+    goal = ik_after(&swept->goal, &step);
+    return ik_arrange(lines, &goal, code);
+}
+
+/* The same, and the six equations; returns the square of a volume. */
+static double ik_swept_at(const ik_swept *swept, double x, int code, ik_loop *loop, ik_six_rows *six)
+{
+    ik_shadow shadow;
+    const ik_shadow *used = &swept->shadow;
+    *loop = ik_swept_loop(swept, x, code);
+    if (!swept->is_constant) {
+        ik_shadow_of(loop->lines, &loop->goal, swept->origin, swept->scale, &shadow);
+        used = &shadow;
+    }
+    ik_eliminate_still(loop->lines, loop->swapped, swept->origin, swept->scale, used, six);
+    return used->volume;
+}
+
+static double ik_swept_value(const ik_swept *swept, double x, int code)
+{
+    ik_loop loop;
+    ik_six_rows six;
+    double volume = ik_swept_at(swept, x, code, &loop, &six), rows[36], sign = 1.0, factor, pivots;
+    factor = ik_reduced(&six, ik_turn_of(1.0, 0.0), rows);
+    pivots = ik_clear(rows, 6, 6, &sign);
+    return volume * (sign * factor * pivots);
+}
+
+/* Adds a candidate: the turns of the five in their order, then the swept variable. */
+static void ik_add_swept(const ik_loop *loop, const ik_turn pair[2], double x, int is_turn, ik_candidates *found)
+{
+    ik_turn middle[3], turns[6], placed[6];
+    int i, joint, still = loop->joints[2];
+    middle[0] = ik_turn_of(1.0, 0.0);
+    middle[1] = pair[loop->swapped ? 1 : 0];
+    middle[2] = pair[loop->swapped ? 0 : 1];
+    if (!ik_close(loop, middle, turns)) return;
+    for (i = 0; i < 6; i++) {
+        joint = loop->joints[i];
+        if (joint != still) placed[joint > still ? joint - 1 : joint] = turns[i];
+    }
+    placed[5] = is_turn ? ik_turn_by(x) : ik_turn_of(x, 0.0);
+    ik_add_turns(placed, found);
+}
+
+/* Adds the candidates of one interval; says whether its roots lie apart. */
+static int ik_look_at_piece(const ik_swept *swept, int code, const ik_piece *piece, double slack, ik_candidates *found)
+{
+    double roots[IK_SIZE][2];
+    int count = ik_roots_of_piece(piece, IK_NEARLY_REAL + 5.0 * ik_sqrt(slack), roots), done[IK_SIZE] = { 0 }, near[IK_SIZE];
+    int apart = 1, together, pairs_found, i, j, k;
+    ik_turn still = ik_turn_of(1.0, 0.0), pairs[6][2];
+    ik_loop loop;
+    ik_six_rows six;
+    for (i = 0; i < count; i++) {
+        double x = roots[i][0], imaginary = roots[i][1], sum = 0.0, mean, change;
+        if (done[i]) continue;
+        together = 0;
+        for (j = 0; j < count; j++) {
+            near[j] = ik_abs(roots[j][0] - x) + ik_abs(roots[j][1] - imaginary) < 3e-3;
+            if (near[j]) {
+                together++;
+                sum += roots[j][0];
+            }
+        }
+        if (together > 1) {
+            /* Several solutions that share the value, or nearly do. */
+            mean = sum / (double)together;
+            ik_swept_at(swept, mean, code, &loop, &six);
+            j = ik_several(&six, still, pairs, &pairs_found);
+            for (k = 0; k < pairs_found; k++) ik_add_swept(&loop, pairs[k], mean, swept->turns, found);
+            if (j == together) {
+                for (j = 0; j < count; j++) done[j] |= near[j];
+                continue;
+            }
+            apart = 0;
+        }
+        if (together == 1 && !(ik_abs(imaginary) > 0.0)) {
+            for (j = 0; j < 4; j++) {
+                change = -ik_swept_value(swept, x, code) / ik_slope_of_piece(piece, x);
+                if (!(ik_abs(change) < IK_NEARLY_REAL)) break;
+                x += change;
+                if (ik_abs(change) < 1e-12) break;
+            }
+        }
+        ik_swept_at(swept, x, code, &loop, &six);
+        if (ik_single(&six, still, pairs[0])) ik_add_swept(&loop, pairs[0], x, swept->turns, found);
+        else apart = 0;
+    }
+    return apart;
+}
+
+/* Adds the candidates of one order; says whether they are all that there are. */
+static int ik_sweep_order(ik_swept *swept, int code, double low, double high, double slack, ik_candidates *found)
+{
+    double table[4 * IK_NODES], samples[IK_NODES], whole = high - low, at = low, width = whole / 16.0, before = 1.7976931348623157e308, rest;
+    ik_piece piece;
+    int all = 1, resolved, round, k;
+    ik_cosines(table);
+    swept->is_constant = swept->before == ik_still_joint(code);
+    if (swept->is_constant) {
+        ik_loop loop = ik_swept_loop(swept, 0.0, code);
+        ik_shadow_of(loop.lines, &loop.goal, swept->origin, swept->scale, &swept->shadow);
+    }
+    for (round = 0; round < 200; round++) {
+        double half = 0.5 * width, centre = at + half;
+        for (k = 0; k < IK_NODES; k++) samples[k] = ik_swept_value(swept, centre + half * table[2 * k + 1], code);
+        ik_piece_of(table, at, width, samples, &piece);
+        rest = ik_rest_of_piece(&piece);
+        resolved = rest < 1e-9 * piece.largest;
+        /* Half an interval that is no better than the whole one shows rounding. */
+        if (!resolved && rest < 0.1 * before && width > (1.0 / 16384.0) * whole) {
+            before = rest;
+            width *= 0.5;
+            continue;
+        }
+        all &= ik_look_at_piece(swept, code, &piece, slack, found) && resolved;
+        at += width;
+        if (at > high - (1.0 / 16384.0) * whole) return all;
+        before = 1.7976931348623157e308;
+        if (!resolved) width *= 2.0;
+        else if (rest < 1e-3 * 1e-9 * piece.largest) width *= 1.5;
+        if (width > high - at) width = high - at;
+    }
+    return 0;
+}
+
+/* Candidates for the joints of a loop: the five unknown turns in order, then the swept variable, as cosine and sine or as a length. The
+   numbers are, for each joint, the direction of its line, a point on it, how it moves and how far; rows of the goal's rotation, its place;
+   three orders as their code and one, zero for none; and where the variable is looked for: zero for a length, one for an angle of which a
+   full turn changes nothing, two for other angles. Slack is for poses at which that gave nothing, as in six joints. */
+static void ik_sweep(const double numbers[88], double slack, ik_candidates *found)
+{
+    ik_swept swept;
+    ik_line ends;
+    ik_vector d;
+    double low, high, sum = 0.0, ratio = 0.0;
+    /* How many of the five come before the first swept joint and before the last one. */
+    int unknown = 0, first = 6, last = 0, i;
+    found->count = 0;
+    for (i = 0; i < 88; i++)
+        if (!ik_finite(numbers[i])) return;
+    swept.origin = ik_half_of(&numbers[3]);
+    for (i = 0; i < IK_MOST_LINES; i++) {
+        const double *from = &numbers[8 * i];
+        swept.lines[i].direction = ik_half_of(from);
+        swept.lines[i].point = ik_half_of(from + 3);
+        swept.kinds[i] = (int)from[6];
+        swept.ratios[i] = from[7];
+        unknown += swept.kinds[i] == 1;
+        if (swept.kinds[i] > 1) {
+            if (unknown < first) first = unknown;
+            last = unknown;
+        }
+    }
+    if (unknown != 5) return;
+    swept.before = first == last ? first : -1;
+    for (i = 0; i < 3; i++) swept.goal.rows[i] = ik_half_of(&numbers[72 + 3 * i]);
+    swept.goal.place = ik_half_of(&numbers[81]);
+    if (slack > 0.0) swept.goal = ik_nudged(&swept.goal, 0.1 * slack);
+    swept.turns = numbers[87] > 0.0;
+    low = -3.141592653589793;
+    high = 3.141592653589793;
+    if (swept.turns && numbers[87] < 2.0) {
+        low = 0.2137 - 3.141592653589793;
+        high = 0.2137 + 3.141592653589793;
+    }
+    /* How far a slide can go at most: the other joints reach no farther. */
+    ends.direction = ends.point = swept.lines[0].point;
+    for (i = 0; i < IK_MOST_LINES; i++) {
+        if (swept.kinds[i] > 0) {
+            d = ik_minus(swept.lines[i].point, ends.point);
+            sum += ik_sqrt(ik_dot(d, d));
+            ends.point = swept.lines[i].point;
+        } else {
+            swept.lines[i].point = swept.lines[0].point;
+        }
+        if (swept.kinds[i] == 3 && ik_abs(swept.ratios[i]) > ratio) ratio = ik_abs(swept.ratios[i]);
+    }
+    swept.scale = ik_scale_of(swept.lines, IK_MOST_LINES, swept.origin);
+    if (!swept.turns) {
+        ends = ik_line_moved(&swept.goal, &ends);
+        d = ik_minus(ends.point, swept.lines[0].point);
+        high = 1.01 * (sum + ik_sqrt(ik_dot(d, d))) / ratio;
+        low = -high;
+    }
+    for (i = 84; i < 87; i++)
+        if (numbers[i] > 0.0 && ik_sweep_order(&swept, ((int)numbers[i] - 1) % 24, low, high, slack, found) && !(slack > 0.0) && found->count > 0)
+            break;
 }

@@ -7,5 +7,9 @@ mod rust;
 pub use c::{CError, CSource, c_source};
 pub use rust::{RustOptions, rust_source};
 
-/// Most solutions that a generated solver returns.
-const CAPACITY: usize = 16;
+use crate::ir::{Program, RootKind};
+
+/// Most solutions that a generated solver returns: six joints that turn have no more than sixteen.
+fn capacity(program: &Program) -> usize {
+    if program.uses(RootKind::Sweep) { 32 } else { 16 }
+}

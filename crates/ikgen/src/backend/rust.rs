@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{CAPACITY, prune};
+use super::{capacity, prune};
 use crate::GoalType;
 use crate::ir::{Block, Expr, Program, RootKind, Stmt, Value};
 use crate::kernel::chain::Frame;
@@ -174,6 +174,7 @@ use math::{angle_of, cos_sin, mirrored, opposite, sqrt};
 use octic::octic;
 use roots::{align, circle, half, mirror, quadratic};
 use six::six_of;
+use sweep::sweep_of;
 ";
 
 fn constants(program: &Program, chain: &TrueChain, out: &mut String) {
@@ -200,7 +201,8 @@ fn constants(program: &Program, chain: &TrueChain, out: &mut String) {
         program.free.len(),
         program.free
     );
-    let _ = writeln!(out, "/// Most solutions of one pose.\npub const CAPACITY: usize = {CAPACITY};\n");
+    let capacity = capacity(program);
+    let _ = writeln!(out, "/// Most solutions of one pose.\npub const CAPACITY: usize = {capacity};\n");
     let _ =
         writeln!(out, "const SLIDES: [bool; {n}] = {:?};\nconst HELD: [bool; {n}] = {held:?};", chain.slides);
     let _ = writeln!(out, "const SLACK: f64 = {:?};\n", program.slack);
@@ -373,9 +375,9 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                 *loops += 1;
                 let k = *loops;
                 let args: Vec<String> = match kind {
-                    RootKind::Conic | RootKind::Octic | RootKind::Six => {
+                    RootKind::Conic | RootKind::Octic | RootKind::Six | RootKind::Sweep => {
                         let all: Vec<String> = args.iter().map(|e| p.expr_text(*e)).collect();
-                        let by = if *kind == RootKind::Six { "&" } else { "" };
+                        let by = if kind.is_joint() { "&" } else { "" };
                         vec![format!("{by}[{}]", all.join(", "))]
                     }
                     _ => args.iter().map(|e| p.expr_text(*e)).collect(),
@@ -385,10 +387,10 @@ fn block(p: &Program, stmts: &Block, depth: usize, loops: &mut usize, out: &mut 
                     names.push("_");
                 }
                 let args = args.join(", ");
-                if *kind == RootKind::Six {
+                if kind.is_joint() {
                     let pairs: Vec<String> = names.chunks(2).map(|p| format!("[{}]", p.join(", "))).collect();
                     // Six joints in general are solved as they are described.
-                    let _ = writeln!(out, "{pad}let roots{k} = six_of({args}, slack - SLACK);");
+                    let _ = writeln!(out, "{pad}let roots{k} = {}_of({args}, slack - SLACK);", kind.word());
                     let _ = writeln!(out, "{pad}for i in 0..roots{k}.count() {{");
                     let _ = writeln!(out, "{pad}    let [{}] = roots{k}.get(i);", pairs.join(", "));
                 } else {

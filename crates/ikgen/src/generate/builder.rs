@@ -167,8 +167,18 @@ impl Builder {
 
     /// For each way in which six revolute joints close a loop; arguments in the order of [`RootKind::Six`].
     pub fn six<'b>(&'b self, names: &[String], args: &[Scalar<'b>]) -> Vec<Turn<'b>> {
+        self.jointly(RootKind::Six, names, args)
+    }
+
+    /// For each way in which five turning joints and one unknown that moves others close a loop; arguments in the order of
+    /// [`RootKind::Sweep`]. Where the last one is a length it takes the place of the cosine.
+    pub fn sweep<'b>(&'b self, names: &[String], args: &[Scalar<'b>]) -> Vec<Turn<'b>> {
+        self.jointly(RootKind::Sweep, names, args)
+    }
+
+    fn jointly<'b>(&'b self, kind: RootKind, names: &[String], args: &[Scalar<'b>]) -> Vec<Turn<'b>> {
         let names: Vec<String> = names.iter().flat_map(|n| [format!("c{n}"), format!("s{n}")]).collect();
-        let out = self.roots(RootKind::Six, args, &names);
+        let out = self.roots(kind, args, &names);
         out.chunks(2).map(|pair| Turn { cos: pair[0], sin: pair[1] }).collect()
     }
 

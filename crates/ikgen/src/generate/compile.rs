@@ -167,9 +167,6 @@ fn search(
     options: &Options,
     trace: &mut Trace<'_>,
 ) -> Result<(Program, String), String> {
-    if Facts::coupled(chain, 0.0).is_none() {
-        return Err("joints that follow others are solved only where they move by the same amount".into());
-    }
     if chain.joints.len() > crate::kernel::chain::MAX_JOINTS {
         return Err(format!("{} joints are too many", chain.joints.len()));
     }
@@ -240,16 +237,19 @@ fn search(
             break;
         }
     }
-    if best.as_ref().is_none_or(|b| b.lost > 0 && options.goal == GoalType::default()) {
-        // As it is described: nothing needs to be ideal.
+    // As it is described: nothing needs to be ideal.
+    let in_general = |free: &[usize], trace: &mut Trace<'_>| {
+        attempt(chain, options, free, EXACT, strategies::GENERAL, false, &letters, trace)
+    };
+    let swept = |free: &[usize], trace: &mut Trace<'_>| swept(chain, options, free, &letters, trace);
+    let last: [&dyn Fn(&[usize], &mut Trace<'_>) -> Result<Found, Option<String>>; 2] = [&in_general, &swept];
+    for way in last {
         for free in &choices {
-            match attempt(chain, options, free, EXACT, strategies::GENERAL, false, &letters, trace) {
-                Ok(found) => {
-                    keep_better(&mut best, found);
-                    if best.as_ref().is_some_and(|b| b.lost == 0) {
-                        break;
-                    }
-                }
+            if best.as_ref().is_some_and(|b| b.lost == 0) {
+                break;
+            }
+            match way(free, trace) {
+                Ok(found) => keep_better(&mut best, found),
                 Err(Some(reason)) => failure = Some(reason),
                 Err(None) => {}
             }
@@ -381,6 +381,34 @@ fn one_by_one(
         }
     };
     let class = describe(letters, "one by one", false, &how, free, chain);
+    let snap = super::facts::snap_between(&facts.described, &facts.ideal);
+    let result = finished(builder, class.clone(), snap, false, chain, options);
+    match &result {
+        Ok(found) => trace.push(format!("{line}{how}; solved, {} trial poses lost", found.lost)),
+        Err(reason) => trace.push(format!("{line}{how}; {reason}")),
+    }
+    result.map_err(|reason| Some(format!("{class}: {reason}")))
+}
+
+/// As [`attempt`], by sweeping one unknown that slides or moves several joints.
+fn swept(
+    chain: &SerialChain,
+    options: &Options,
+    free: &[usize],
+    letters: &str,
+    trace: &mut Trace<'_>,
+) -> Result<Found, Option<String>> {
+    let facts = Facts::geared(chain, EXACT);
+    let line = format!("free {free:?}, sweep: ");
+    let builder = Builder::new(options.goal, chain.variables.len(), free.to_vec());
+    let how = match super::sweep::write(&facts, free, &builder) {
+        Ok(how) => how,
+        Err(reason) => {
+            trace.push(format!("{line}{reason}"));
+            return Err(Some(format!("{letters}: {reason}")));
+        }
+    };
+    let class = describe(letters, "general", false, &how, free, chain);
     let snap = super::facts::snap_between(&facts.described, &facts.ideal);
     let result = finished(builder, class.clone(), snap, false, chain, options);
     match &result {

@@ -32,6 +32,7 @@ pub(super) fn completions(problem: &Problem) -> Vec<Problem> {
                 point,
                 motion: ChainMotion::Revolute,
                 variable: 0,
+                ratio: 1.0,
             };
             let added =
                 if problem.axes.len() == 5 { vec![add(first)] } else { vec![add(first), add(second)] };

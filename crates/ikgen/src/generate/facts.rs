@@ -15,6 +15,8 @@ pub struct Axis {
     pub motion: ChainMotion,
     /// The variable that moves it.
     pub variable: usize,
+    /// How far, for each unit of the variable: positive, and one unless the joint follows another.
+    pub ratio: f64,
 }
 
 /// The axes of a chain.
@@ -41,7 +43,13 @@ impl Facts {
 
     /// The facts of a chain in which several joints may move by the same amount, or by the opposite; `None` for other ratios.
     pub fn coupled(chain: &SerialChain, tolerance: f64) -> Option<Self> {
-        let axes = axes_at_zero(chain)?;
+        let facts = Self::geared(chain, tolerance);
+        facts.described.iter().all(|a| a.ratio == 1.0).then_some(facts)
+    }
+
+    /// The facts of any chain.
+    pub fn geared(chain: &SerialChain, tolerance: f64) -> Self {
+        let axes = axes_at_zero(chain);
         let tip = chain.forward(&vec![0.0; chain.variables.len()]);
         let identity = nalgebra::UnitQuaternion::identity();
         let simple = |axes: &[Axis]| axes.iter().all(|a| simple_direction(&a.direction, tolerance).is_some());
@@ -52,7 +60,7 @@ impl Facts {
             .collect();
         let ideal = ideal_axes(&described, tolerance);
         let tip = Pose::from_parts(nalgebra::Translation3::identity(), turn) * tip;
-        Some(Self { described, ideal, canonical_from_base: turn, tip, tolerance })
+        Self { described, ideal, canonical_from_base: turn, tip, tolerance }
     }
 }
 
@@ -74,20 +82,18 @@ pub fn snap_between(described: &[Axis], ideal: &[Axis]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-fn axes_at_zero(chain: &SerialChain) -> Option<Vec<Axis>> {
+fn axes_at_zero(chain: &SerialChain) -> Vec<Axis> {
     let mut axes = Vec::new();
     let mut at = Pose::identity();
     for joint in &chain.joints {
-        if joint.multiplier.abs() != 1.0 {
-            return None;
-        }
         at *= joint.previous_from_joint;
         let direction = at.rotation * joint.axis.into_inner();
         axes.push(Axis {
-            direction: direction * joint.multiplier,
+            direction: if joint.multiplier < 0.0 { -direction } else { direction },
             point: at.translation.vector,
             motion: joint.motion,
             variable: joint.variable,
+            ratio: joint.multiplier.abs(),
         });
         at *= match joint.motion {
             ChainMotion::Revolute => Pose::from_parts(
@@ -100,7 +106,7 @@ fn axes_at_zero(chain: &SerialChain) -> Option<Vec<Axis>> {
             ),
         };
     }
-    Some(axes)
+    axes
 }
 
 /// The turn that makes the first axis z and the next other direction lie in the xz plane.

@@ -11,6 +11,7 @@ mod natural;
 mod one_by_one;
 pub mod problem;
 pub mod strategies;
+mod sweep;
 
 pub use compile::{Compiled, Options, Refusal, compile, compile_watched};
 pub use natural::natural;

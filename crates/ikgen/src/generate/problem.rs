@@ -7,7 +7,7 @@ use super::builder::{Builder, Move, Scalar, Turn, Vector};
 use super::facts::{Axis, Facts, tidy};
 
 /// An added joint is taken to be at zero when its cosine is this close to one; the check of solutions is exact.
-const OFF_ZERO: f64 = 1e-3;
+pub(super) const OFF_ZERO: f64 = 1e-3;
 
 /// `e_1 e_2 ... e_n = G`: unknown motions about axes given at zero, and the motion that takes the tip from its pose at zero
 /// to the wanted one.

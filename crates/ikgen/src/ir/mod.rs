@@ -29,11 +29,14 @@ pub enum RootKind {
     /// `six ... -> c s c s c s c s c s c s`: six revolute joints that close a loop; arguments as [`six_of`](crate::kernel::six::six_of)
     /// takes them.
     Six,
+    /// `sweep ... -> c s c s c s c s c s c s`: five turning joints and one unknown that slides or moves several joints, which close a
+    /// loop; arguments as [`sweep_of`](crate::kernel::sweep::sweep_of) takes them.
+    Sweep,
 }
 
 impl RootKind {
     /// All kinds.
-    pub const ALL: [RootKind; 8] = [
+    pub const ALL: [RootKind; 9] = [
         Self::Align,
         Self::Mirror,
         Self::Half,
@@ -42,6 +45,7 @@ impl RootKind {
         Self::Octic,
         Self::Quadratic,
         Self::Six,
+        Self::Sweep,
     ];
 
     /// Its word in the text form.
@@ -55,6 +59,7 @@ impl RootKind {
             Self::Octic => "octic",
             Self::Quadratic => "quadratic",
             Self::Six => "six",
+            Self::Sweep => "sweep",
         }
     }
 
@@ -66,6 +71,7 @@ impl RootKind {
             Self::Conic => 6,
             Self::Octic => 9,
             Self::Six => crate::kernel::six::NUMBERS,
+            Self::Sweep => crate::kernel::sweep::NUMBERS,
         }
     }
 
@@ -73,12 +79,27 @@ impl RootKind {
     pub fn outputs(self) -> usize {
         match self {
             Self::Quadratic => 1,
-            Self::Six => 12,
+            Self::Six | Self::Sweep => 12,
             _ => 2,
         }
     }
 
-    /// The roots of one unknown for these argument values; none for [`Six`](Self::Six), which has six.
+    /// Whether it gives six unknowns at once.
+    pub fn is_joint(self) -> bool {
+        matches!(self, Self::Six | Self::Sweep)
+    }
+
+    /// Candidates for six unknowns at once; none for kinds that have one.
+    pub fn solve_jointly(self, x: &[f64], slack: f64) -> crate::kernel::six::Candidates {
+        use crate::kernel::{six, sweep};
+        match self {
+            Self::Six => six::six_of(&core::array::from_fn(|i| x[i]), slack),
+            Self::Sweep => sweep::sweep_of(&core::array::from_fn(|i| x[i]), slack),
+            _ => six::Candidates::NONE,
+        }
+    }
+
+    /// The roots of one unknown for these argument values; none for kinds that give six at once.
     pub fn solve(self, x: &[f64], slack: f64) -> crate::kernel::roots::Roots<8> {
         use crate::kernel::roots;
         match self {
@@ -89,7 +110,7 @@ impl RootKind {
             Self::Conic => crate::kernel::conic::conic([x[0], x[1], x[2], x[3], x[4], x[5]], slack).widened(),
             Self::Octic => crate::kernel::octic::octic(core::array::from_fn(|i| x[i]), slack),
             Self::Quadratic => roots::quadratic(x[0], x[1], x[2], slack).widened(),
-            Self::Six => roots::Roots::NONE,
+            Self::Six | Self::Sweep => roots::Roots::NONE,
         }
     }
 }

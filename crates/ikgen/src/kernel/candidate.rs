@@ -78,11 +78,17 @@ impl Arm<'_> {
             return false;
         }
         for i in 0..values.len() {
-            if !self.slides[i] && !self.held[i] {
+            if self.is_round(i) && !self.held[i] {
                 values[i] = principal(values[i]);
             }
         }
         true
+    }
+
+    /// Whether a full turn of a variable changes nothing: not of a length, nor where a joint follows by a part of the angle.
+    pub fn is_round(&self, variable: usize) -> bool {
+        !self.slides[variable]
+            && self.links.iter().all(|l| l.variable != variable || l.ratio == (l.ratio as i64) as f64)
     }
 
     /// Whether two solutions are the same one.
@@ -90,7 +96,7 @@ impl Arm<'_> {
         for i in 0..a.len() {
             let gap = (a[i] - b[i]).abs();
             let turned = (gap - core::f64::consts::TAU).abs();
-            if gap >= SAME && (self.slides[i] || turned >= SAME) {
+            if gap >= SAME && (turned >= SAME || !self.is_round(i)) {
                 return false;
             }
         }

@@ -1,7 +1,7 @@
 //! Raghavan and Roth's elimination for a loop of six turns: from fourteen equations to one determinant.
 
 use super::math::{cos_sin, sqrt};
-use super::vector::{Line, Motion, back, cross, dot, minus, times};
+use super::vector::{Line, Motion, Vector, back, cross, dot, minus, times};
 use super::waves::MAX_SAMPLES;
 
 /// Six equations, each with a coefficient for each product of one of `1, c, s` of the sampled angle `q3`, one of `t^2, t, 1` of the
@@ -60,17 +60,9 @@ pub fn eliminate(lines: &[Line; 6], goal: &Motion, swapped: bool) -> Six {
 
 /// Both sides of the fourteen equations.
 pub fn sides(lines: &[Line; 6], goal: &Motion, swapped: bool) -> (Left, Right) {
-    let origin = lines[2].point;
-    let mut size = 0.0f64;
-    for line in lines {
-        let d = minus(line.point, origin);
-        size = size.max(dot(d, d));
-    }
-    let scale = 1.0 / sqrt(size);
-    let scaled = |line: Line| Line { point: times(minus(line.point, origin), scale), ..line };
-    let shifted = PLACES.map(|place| sum(place, START));
-    let (places4, places5) = if swapped { (PLACES, shifted) } else { (shifted, PLACES) };
-
+    let measure = Measure::of(lines, lines[2].point);
+    let scaled = |line: Line| measure.scaled(line);
+    let (places4, places5) = places(swapped);
     let mut left = [[0.0; 27]; 14];
     for k in 0..3 {
         let after5 = lines[4].moved(&lines[5], places5[k]);
@@ -85,20 +77,8 @@ pub fn sides(lines: &[Line; 6], goal: &Motion, swapped: bool) -> (Left, Right) {
             }
         }
     }
-    let mut right = [[0.0; 9]; 14];
-    let last = goal.moved(&lines[5]);
-    for i in 0..3 {
-        let before1 = lines[0].moved(&last, back(PLACES[i]));
-        for j in 0..3 {
-            let values = functions(&scaled(lines[1].moved(&before1, back(PLACES[j]))));
-            for (row, value) in right.iter_mut().zip(values) {
-                row[3 * i + j] = value;
-            }
-        }
-    }
-    for (left, right) in left.iter_mut().zip(&mut right) {
-        fit(right, 1);
-        fit(right, 3);
+    let right = right_side(lines, goal, &measure);
+    for (left, right) in left.iter_mut().zip(&right) {
         fit(left, 1);
         fit(left, 3);
         fit(left, 9);
@@ -107,25 +87,135 @@ pub fn sides(lines: &[Line; 6], goal: &Motion, swapped: bool) -> (Left, Right) {
     (left, right)
 }
 
+/// Where points are measured from, and in what unit: the functions of lines are to be of one size.
+pub struct Measure {
+    origin: Vector,
+    scale: f64,
+}
+
+impl Measure {
+    /// That of lines, seen from a point.
+    pub fn of(lines: &[Line], origin: Vector) -> Measure {
+        let mut size = 0.0f64;
+        for line in lines {
+            let d = minus(line.point, origin);
+            size = size.max(dot(d, d));
+        }
+        Measure { origin, scale: 1.0 / sqrt(size) }
+    }
+
+    fn scaled(&self, line: Line) -> Line {
+        Line { point: times(minus(line.point, self.origin), self.scale), ..line }
+    }
+}
+
+/// Turns of `q4` and of `q5` at which the left side is sampled.
+fn places(swapped: bool) -> ([[f64; 2]; 3], [[f64; 2]; 3]) {
+    let shifted = PLACES.map(|place| sum(place, START));
+    if swapped { (PLACES, shifted) } else { (shifted, PLACES) }
+}
+
+fn right_side(lines: &[Line; 6], goal: &Motion, measure: &Measure) -> Right {
+    let mut right = [[0.0; 9]; 14];
+    let last = goal.moved(&lines[5]);
+    for i in 0..3 {
+        let before1 = lines[0].moved(&last, back(PLACES[i]));
+        for j in 0..3 {
+            let values = functions(&measure.scaled(lines[1].moved(&before1, back(PLACES[j]))));
+            for (row, value) in right.iter_mut().zip(values) {
+                row[3 * i + j] = value;
+            }
+        }
+    }
+    for right in &mut right {
+        fit(right, 1);
+        fit(right, 3);
+    }
+    right
+}
+
+/// The right side of a loop, by what it leaves of the left one.
+pub struct Shadow {
+    /// Six combinations of the fourteen equations that hold whatever `q1` and `q2` are.
+    rows: [[f64; 14]; 6],
+    /// What is constant on the right side.
+    constant: [f64; 14],
+    /// Square of the volume that its columns span: with it as a factor the determinant is a smooth function of the loop.
+    pub volume: f64,
+}
+
+/// The right side of a loop, measured so.
+pub fn shadow(lines: &[Line; 6], goal: &Motion, measure: &Measure) -> Shadow {
+    let mut right = right_side(lines, goal, measure);
+    let mut constant = [0.0; 14];
+    let mut all = [[0.0; 14]; 14];
+    for i in 0..14 {
+        constant[i] = right[i][0];
+        all[i][i] = 1.0;
+    }
+    let volume = reflect(&mut all, &mut right);
+    let mut rows = [[0.0; 14]; 6];
+    rows.copy_from_slice(&all[8..]);
+    Shadow { rows, constant, volume }
+}
+
+/// As [`eliminate`], of a loop whose third joint does not turn: the six equations hold for `q3` at zero.
+pub fn eliminate_still(lines: &[Line; 6], swapped: bool, measure: &Measure, shadow: &Shadow) -> Six {
+    let (places4, places5) = places(swapped);
+    let mut left = [[0.0; 9]; 14];
+    for k in 0..3 {
+        let after5 = lines[4].moved(&lines[5], places5[k]);
+        for j in 0..3 {
+            let values = functions(&measure.scaled(lines[3].moved(&after5, places4[j])));
+            let column = if swapped { 3 * k + j } else { 3 * j + k };
+            for (row, value) in left.iter_mut().zip(values) {
+                row[column] = value;
+            }
+        }
+    }
+    for (left, constant) in left.iter_mut().zip(shadow.constant) {
+        fit(left, 1);
+        fit(left, 3);
+        left[0] -= constant;
+    }
+    let mut six = [[0.0; 27]; 6];
+    for (six, row) in six.iter_mut().zip(&shadow.rows) {
+        for (left, part) in left.iter().zip(row) {
+            for (x, from) in six.iter_mut().zip(left) {
+                *x += part * from;
+            }
+        }
+        by_half_tangent(&mut six[..9]);
+    }
+    six
+}
+
 /// What of the left side holds whatever `q1` and `q2` are.
 pub fn without_right(mut left: Left, mut right: Right) -> Six {
     reflect(&mut left, &mut right);
     let mut six = [[0.0; 27]; 6];
     six.copy_from_slice(&left[8..]);
     for row in &mut six {
-        for i in 0..3 {
-            for k in 0..3 {
-                // (1 + t^2) (one + cos c + sin s)
-                let [one, cos, sin] = [0, 3, 6].map(|j| row[9 * i + j + k]);
-                (row[9 * i + k], row[9 * i + 3 + k], row[9 * i + 6 + k]) = (one - cos, 2.0 * sin, one + cos);
-            }
+        for part in row.chunks_exact_mut(9) {
+            by_half_tangent(part);
         }
     }
     six
 }
 
-/// Takes all columns of `right` but the first to its first eight rows, by reflections of both sides.
-fn reflect(left: &mut Left, right: &mut Right) {
+/// From the coefficients of `1, c, s` to those of `t^2, t, 1`, three of each.
+fn by_half_tangent(row: &mut [f64]) {
+    for k in 0..3 {
+        // (1 + t^2) (one + cos c + sin s)
+        let [one, cos, sin] = [row[k], row[3 + k], row[6 + k]];
+        (row[k], row[3 + k], row[6 + k]) = (one - cos, 2.0 * sin, one + cos);
+    }
+}
+
+/// Takes all columns of `right` but the first to its first eight rows, by reflections of both sides; returns the square of the volume
+/// that they span.
+fn reflect<const C: usize>(left: &mut [[f64; C]; 14], right: &mut Right) -> f64 {
+    let mut volume = 1.0;
     let mut done = [false; 9];
     done[0] = true;
     for step in 0..8 {
@@ -143,8 +233,9 @@ fn reflect(left: &mut Left, right: &mut Right) {
         }
         done[pivot] = true;
         if most < 1e-24 {
-            return;
+            break;
         }
+        volume *= most;
         let mut mirror = [0.0; 14];
         for r in step..14 {
             mirror[r] = right[r][pivot];
@@ -152,7 +243,7 @@ fn reflect(left: &mut Left, right: &mut Right) {
         let head = mirror[step];
         mirror[step] += if head < 0.0 { -sqrt(most) } else { sqrt(most) };
         let factor = 1.0 / (most + head.abs() * sqrt(most));
-        let mut sums = ([0.0; 27], [0.0; 9]);
+        let mut sums = ([0.0; C], [0.0; 9]);
         for r in step..14 {
             for (sum, x) in sums.0.iter_mut().zip(&left[r]) {
                 *sum += mirror[r] * x;
@@ -171,6 +262,7 @@ fn reflect(left: &mut Left, right: &mut Right) {
             }
         }
     }
+    volume
 }
 
 /// The six equations at one value of `q3`: three forms in `1, c, s` of the third angle, with `t^2`, `t` and 1.

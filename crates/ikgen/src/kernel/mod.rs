@@ -16,16 +16,18 @@ pub mod family;
 pub mod math;
 pub mod null;
 pub mod octic;
+pub mod piece;
 pub mod roots;
 pub mod six;
 pub mod sqrt;
 pub mod sqrt_core;
+pub mod sweep;
 pub mod vector;
 pub mod waves;
 
 /// Source text of the kernel files, as generated files carry what they call of it; the square root comes in two kinds.
 #[cfg(feature = "generate")]
-pub(crate) const SOURCES: [(&str, &str); 13] = [
+pub(crate) const SOURCES: [(&str, &str); 15] = [
     ("math", include_str!("math.rs")),
     ("roots", include_str!("roots.rs")),
     ("chain", include_str!("chain.rs")),
@@ -39,6 +41,8 @@ pub(crate) const SOURCES: [(&str, &str); 13] = [
     ("elimination", include_str!("elimination.rs")),
     ("null", include_str!("null.rs")),
     ("six", include_str!("six.rs")),
+    ("piece", include_str!("piece.rs")),
+    ("sweep", include_str!("sweep.rs")),
 ];
 
 /// The square root of the platform.

@@ -55,7 +55,7 @@ impl Candidates {
     }
 
     /// Adds one, if it is new and there is room.
-    fn push(&mut self, turns: Turns) {
+    pub fn push(&mut self, turns: Turns) {
         let new = self.items[..self.len].iter().all(|other| {
             let mut gap = 0.0f64;
             for (a, b) in other.iter().flatten().zip(turns.iter().flatten()) {
@@ -83,7 +83,7 @@ pub struct Order {
 }
 
 /// Roots whose imaginary part is smaller may be real: pairs that fall together lose half of their digits.
-const NEARLY_REAL: f64 = 1e-3;
+pub const NEARLY_REAL: f64 = 1e-3;
 
 /// Where the polynomial is smaller than this part of the largest sample, rounding decides where its roots are and which are real.
 const FLAT: f64 = 1e-11;
@@ -95,7 +95,7 @@ const ROUNDING: f64 = 1e-14;
 const MOST_VIEWS: usize = 4;
 
 /// Roots that are nearer to each other may be one.
-const APART: f64 = 3e-3;
+pub const APART: f64 = 3e-3;
 
 /// As far rounding parts a double root. Roots that are farther apart, but not clearly, ask for another order.
 const MERGED: f64 = 1e-5;
@@ -104,15 +104,19 @@ const MERGED: f64 = 1e-5;
 pub const ORDERS: usize = 24;
 
 /// A loop turned and shifted to an order.
-struct Arranged {
-    lines: [Line; 6],
-    goal: Motion,
+pub struct Arranged {
+    /// The joints' lines.
+    pub lines: [Line; 6],
+    /// The motion that they make together.
+    pub goal: Motion,
     /// The joint at each place of the order.
-    joints: [usize; 6],
-    swapped: bool,
+    pub joints: [usize; 6],
+    /// Whether the half tangent is that of the fifth in place of the fourth.
+    pub swapped: bool,
 }
 
-fn arrange(lines: &[Line; 6], goal: &Motion, code: usize) -> Arranged {
+/// A loop in the order of a code.
+pub fn arrange(lines: &[Line; 6], goal: &Motion, code: usize) -> Arranged {
     let reversed = code >= 12;
     let (shift, swapped) = (code % 12 / 2, code % 2 == 1);
     let goal = if reversed { goal.inverse() } else { *goal };
@@ -134,7 +138,7 @@ fn arrange(lines: &[Line; 6], goal: &Motion, code: usize) -> Arranged {
 }
 
 /// The first two turns and the last, from the middle three.
-fn close(loop_: &Arranged, middle: [[f64; 2]; 3]) -> Option<[[f64; 2]; 3]> {
+pub fn close(loop_: &Arranged, middle: [[f64; 2]; 3]) -> Option<[[f64; 2]; 3]> {
     let lines = &loop_.lines;
     let reached =
         lines[2].moved(&lines[3].moved(&lines[4].moved(&lines[5], middle[2]), middle[1]), middle[0]);
@@ -207,7 +211,7 @@ pub fn six(lines: &[Line; 6], goal: &Motion, orders: &[Order], slack: f64) -> Ca
 }
 
 /// A motion near another, in no special direction.
-fn nudged(goal: &Motion, size: f64) -> Motion {
+pub fn nudged(goal: &Motion, size: f64) -> Motion {
     let turn = cos_sin(size);
     let about = Line { direction: [0.48, -0.6, 0.64], point: [0.0; 3] };
     let column = |i: usize| about.turned([goal.rows[0][i], goal.rows[1][i], goal.rows[2][i]], turn);

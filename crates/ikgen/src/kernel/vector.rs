@@ -63,6 +63,13 @@ impl Line {
         plus(self.point, self.turned(minus(p, self.point), turn))
     }
 
+    /// The motion of turning by `[cos, sin]`.
+    pub fn motion(&self, turn: [f64; 2]) -> Motion {
+        let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| self.turned(e, turn));
+        let row = |i: usize| [x[i], y[i], z[i]];
+        Motion { rows: [row(0), row(1), row(2)], place: self.carried([0.0; 3], turn) }
+    }
+
     /// A line turned by `[cos, sin]`.
     pub fn moved(&self, line: &Line, turn: [f64; 2]) -> Line {
         Line { direction: self.turned(line.direction, turn), point: self.carried(line.point, turn) }
@@ -87,6 +94,14 @@ impl Motion {
     /// A line after the motion.
     pub fn moved(&self, line: &Line) -> Line {
         Line { direction: self.turned(line.direction), point: plus(self.turned(line.point), self.place) }
+    }
+
+    /// This motion after another.
+    pub fn after(&self, first: &Motion) -> Motion {
+        let [a, b, c] = first.rows;
+        let columns = [[a[0], b[0], c[0]], [a[1], b[1], c[1]], [a[2], b[2], c[2]]].map(|v| self.turned(v));
+        let row = |i: usize| [columns[0][i], columns[1][i], columns[2][i]];
+        Motion { rows: [row(0), row(1), row(2)], place: plus(self.turned(first.place), self.place) }
     }
 
     /// The motion back.

@@ -5,7 +5,7 @@
 
 use super::cost::cost;
 use super::{flip, optimise, with_body};
-use crate::ir::{Binary, Block, Expr, Exprs, Node, Program, RootKind, Stmt, Unary, Value, Var};
+use crate::ir::{Binary, Block, Expr, Exprs, Node, Program, Stmt, Unary, Value, Var};
 use crate::kernel::chain::{Frame, Link};
 use crate::run::TrueChain;
 
@@ -44,7 +44,7 @@ fn block(stmts: &mut Block, out: &mut Program, chain: &TrueChain, cut: usize, pa
     let mut i = 0;
     while i < stmts.len() {
         match &mut stmts[i] {
-            Stmt::ForEach { kind: RootKind::Six, body, .. } => unchecked(body, out),
+            Stmt::ForEach { kind, body, .. } if kind.is_joint() => unchecked(body, out),
             Stmt::ForEach { out: names, body, .. } => {
                 let outer = pairs.len();
                 pairs.extend(names.chunks_exact(2).map(|p| [p[0], p[1]]));

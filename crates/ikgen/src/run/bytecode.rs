@@ -6,7 +6,8 @@ use crate::kernel::chain::{Frame, MAX_JOINTS};
 use crate::kernel::conic::conic;
 use crate::kernel::octic::octic;
 use crate::kernel::roots::{self, Roots};
-use crate::kernel::six::{NUMBERS, six_of};
+use crate::kernel::six::Candidates;
+use crate::kernel::{six, sweep};
 use crate::run::TrueChain;
 
 /// A program that needs more registers than the machine has.
@@ -62,7 +63,8 @@ pub(super) enum Item {
     Steps { from: u32, to: u32 },
     ForEach { kind: RootKind, args: [u16; 6], out: [u16; 2], outputs: u8, body: Vec<Item> },
     Octic { args: Box<[u16; 9]>, out: [u16; 2], body: Vec<Item> },
-    Six { args: Box<[u16; NUMBERS]>, out: [u16; 12], body: Vec<Item> },
+    Six { args: Box<[u16; six::NUMBERS]>, out: [u16; 12], body: Vec<Item> },
+    Sweep { args: Box<[u16; sweep::NUMBERS]>, out: [u16; 12], body: Vec<Item> },
     IfZero { value: u16, tolerance: f64, then: Vec<Item>, otherwise: Vec<Item> },
     Fallback { first: Vec<Item>, otherwise: Vec<Item> },
     Doubt { value: u16, tolerance: f64 },
@@ -230,7 +232,9 @@ impl Bytecode {
                         RootKind::Conic => {
                             self.each(conic([a, b, c, d, e, f], slack), each, x, slack, state, offer)
                         }
-                        RootKind::Octic | RootKind::Six => unreachable!("these have items of their own"),
+                        RootKind::Octic | RootKind::Six | RootKind::Sweep => {
+                            unreachable!("these have items of their own")
+                        }
                     };
                 }
                 Item::Octic { args, out, body } => {
@@ -241,13 +245,15 @@ impl Bytecode {
                     if !take(&mut state.left, SIX_ROOTS) {
                         continue;
                     }
-                    let found = six_of(&args.map(|i| x[at(i)]), slack - self.slack);
-                    for i in 0..found.count() {
-                        for (to, value) in out.iter().zip(found.get(i).into_iter().flatten()) {
-                            x[at(*to)] = value;
-                        }
-                        accepted += self.block(body, x, slack, state, offer);
+                    let found = six::six_of(&args.map(|i| x[at(i)]), slack - self.slack);
+                    accepted += self.jointly(&found, (body, out), x, slack, state, offer);
+                }
+                Item::Sweep { args, out, body } => {
+                    if !take(&mut state.left, SIX_ROOTS) {
+                        continue;
                     }
+                    let found = sweep::sweep_of(&args.map(|i| x[at(i)]), slack - self.slack);
+                    accepted += self.jointly(&found, (body, out), x, slack, state, offer);
                 }
                 Item::IfZero { value, tolerance, then, otherwise } => {
                     let zero = x[at(*value)].abs() < *tolerance;
@@ -315,6 +321,28 @@ impl Bytecode {
     }
 }
 
+impl Bytecode {
+    /// The body of a loop for each candidate of six unknowns.
+    fn jointly<const N: usize>(
+        &self,
+        found: &Candidates,
+        (body, out): (&[Item], &[u16; 12]),
+        x: &mut [f64; N],
+        slack: f64,
+        state: &mut State,
+        offer: &mut impl FnMut(&Candidate) -> Verdict,
+    ) -> usize {
+        let mut accepted = 0;
+        for i in 0..found.count() {
+            for (to, value) in out.iter().zip(found.get(i).into_iter().flatten()) {
+                x[usize::from(*to) & (N - 1)] = value;
+            }
+            accepted += self.block(body, x, slack, state, offer);
+        }
+        accepted
+    }
+}
+
 struct Translator<'p> {
     program: &'p Program,
     steps: Vec<Step>,
@@ -344,17 +372,22 @@ impl Translator<'_> {
                     self.assign(*var, *value, &mut t);
                     None
                 }
-                Stmt::ForEach { kind: RootKind::Six, args, out, body } => {
-                    let mut registers = Box::new([0; NUMBERS]);
-                    for (r, e) in registers.iter_mut().zip(args) {
-                        *r = self.value(*e, &mut t);
-                    }
+                Stmt::ForEach { kind, args, out, body } if kind.is_joint() => {
+                    let args: Vec<u16> = args.iter().map(|e| self.value(*e, &mut t)).collect();
                     self.flush(from, &mut items);
                     let mut names = [0; 12];
                     for (name, v) in names.iter_mut().zip(out) {
                         *name = self.name(*v);
                     }
-                    Some(Item::Six { args: registers, out: names, body: self.block(body) })
+                    let body = self.block(body);
+                    Some(match kind {
+                        RootKind::Six => {
+                            Item::Six { args: Box::new(std::array::from_fn(|i| args[i])), out: names, body }
+                        }
+                        _ => {
+                            Item::Sweep { args: Box::new(std::array::from_fn(|i| args[i])), out: names, body }
+                        }
+                    })
                 }
                 Stmt::ForEach { kind: RootKind::Octic, args, out, body } => {
                     let mut registers = Box::new([0; 9]);

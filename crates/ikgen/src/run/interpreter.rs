@@ -1,9 +1,8 @@
 //! The reference interpreter: walks the program as it is written, without any preparation.
 
 use super::{MOST_ROOTS, SIX_ROOTS, Verdict, take};
-use crate::ir::{Block, Expr, Node, Program, RootKind, Stmt, Value};
+use crate::ir::{Block, Expr, Node, Program, Stmt, Value};
 use crate::kernel::chain::{Frame, MAX_JOINTS};
-use crate::kernel::six::six_of;
 
 /// Runs `program` and offers each emitted candidate: `[cos, sin]` or `[length, 0]` of each variable.
 ///
@@ -52,13 +51,12 @@ impl Run<'_> {
                     let zero = self.value(*value).abs() < *tolerance;
                     self.block(if zero { then } else { otherwise });
                 }
-                Stmt::ForEach { kind: RootKind::Six, args, out, body } => {
+                Stmt::ForEach { kind, args, out, body } if kind.is_joint() => {
                     if !take(&mut self.left, SIX_ROOTS) {
                         continue;
                     }
                     let args: Vec<f64> = args.iter().map(|e| self.value(*e)).collect();
-                    let numbers = args.try_into().expect("validated");
-                    let found = six_of(&numbers, self.slack - self.program.slack);
+                    let found = kind.solve_jointly(&args, self.slack - self.program.slack);
                     for i in 0..found.count() {
                         for (var, x) in out.iter().zip(found.get(i).into_iter().flatten()) {
                             self.vars[var.0 as usize] = x;

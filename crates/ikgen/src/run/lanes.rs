@@ -12,7 +12,7 @@ use crate::kernel::chain::{Frame, MAX_JOINTS};
 use crate::kernel::conic::conic;
 use crate::kernel::octic::octic;
 use crate::kernel::roots::{self, Roots};
-use crate::kernel::six::{Candidates, six_of};
+use crate::kernel::six::Candidates;
 
 /// Poses that go together.
 pub(super) const LANES: usize = 8;
@@ -115,14 +115,17 @@ impl<'a, F: FnMut(usize, &Frame, Offer<'_>) -> bool> Run<'a, F> {
                             self.each(|i| roots::quadratic(x[0][i], x[1][i], x[2][i], s), each);
                         }
                         RootKind::Conic => self.each(|i| conic(x.map(|x| x[i]), s), each),
-                        RootKind::Octic | RootKind::Six => unreachable!("these have items of their own"),
+                        RootKind::Octic | RootKind::Six | RootKind::Sweep => {
+                            unreachable!("these have items of their own")
+                        }
                     }
                 }
                 Item::Octic { args, out, body } => {
                     let (x, s) = (args.map(|i| self.x[usize::from(i)]), self.slack);
                     self.each(|i| octic(x.map(|x| x[i]), s), (*out, 2, body, mask));
                 }
-                Item::Six { args, out, body } => self.six(&args[..], out, body, mask),
+                Item::Six { args, out, body } => self.jointly(RootKind::Six, &args[..], out, body, mask),
+                Item::Sweep { args, out, body } => self.jointly(RootKind::Sweep, &args[..], out, body, mask),
                 Item::IfZero { value, tolerance, then, otherwise } => {
                     let value = self.x[usize::from(*value)];
                     let zero = lanes_where(mask, |lane| value[lane].abs() < *tolerance);
@@ -183,7 +186,7 @@ impl<'a, F: FnMut(usize, &Frame, Offer<'_>) -> bool> Run<'a, F> {
     }
 
     /// The body for each way in which six joints close the loop.
-    fn six(&mut self, args: &[u16], out: &[u16; 12], body: &'a [Item], mask: Mask) {
+    fn jointly(&mut self, kind: RootKind, args: &[u16], out: &[u16; 12], body: &'a [Item], mask: Mask) {
         if !super::take(&mut self.left, SIX_ROOTS) {
             self.unfinished |= mask;
             return;
@@ -193,11 +196,11 @@ impl<'a, F: FnMut(usize, &Frame, Offer<'_>) -> bool> Run<'a, F> {
             if mask >> lane & 1 == 0 {
                 return Candidates::NONE;
             }
-            let mut numbers = [0.0; crate::kernel::six::NUMBERS];
+            let mut numbers = [0.0; crate::kernel::sweep::NUMBERS];
             for (number, register) in numbers.iter_mut().zip(args) {
                 *number = self.x[usize::from(*register)][lane];
             }
-            six_of(&numbers, slack)
+            kind.solve_jointly(&numbers, slack)
         });
         for i in 0.. {
             let lanes = lanes_where(mask & !self.unfinished, |lane| i < found[lane].count());

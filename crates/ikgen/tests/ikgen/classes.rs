@@ -63,10 +63,10 @@ fn offset_wrists_are_solved_everywhere_on_the_grid_of_right_angles() {
 
 #[test]
 fn chains_that_no_strategy_fits_are_refused_with_a_reason() {
-    let mut chain = arms::ur5();
-    chain.joints[3].motion = robotc_core::model::ChainMotion::Prismatic;
-    let refusal = compile(&chain, &Options::default()).unwrap_err();
-    assert!(refusal.reason.starts_with("RRRPRR: no equation holds only one of the joints"), "{refusal}");
+    let refusal = compile(&arms::sliding(arms::skew(), &[1, 3]), &Options::default()).unwrap_err();
+    let reason =
+        "RPRPRR: joints 2, 4 each slide or move several joints, and no equation holds only one of them";
+    assert_eq!(refusal.reason, reason);
     assert!(!refusal.trace.is_empty());
 }
 

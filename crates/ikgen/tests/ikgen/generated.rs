@@ -13,7 +13,7 @@ use robotc_ikgen::report::poses;
 use robotc_ikgen::run::Engine;
 use robotc_ikgen::{Compiled, GoalType, Options, Solver, compile};
 
-use crate::{arms, goals, golden};
+use crate::{arms, coupled, goals, golden};
 
 /// How far the reference may be from the rest at a regular pose: it takes the angles of a candidate in another way.
 const REGULAR: f64 = 1e-9;
@@ -30,6 +30,7 @@ fn every_back_end_gives_the_same_solutions() {
     let mut compiled: Vec<Compiled> =
         arms::all().iter().map(|c| compile(c, &Options::default()).unwrap()).collect();
     compiled.extend(goals::one_of_each_kind());
+    compiled.extend(coupled::two_kinds());
     let (corpus, expected) = corpus(&compiled);
     std::fs::write(folder.path().join("corpus"), &corpus).unwrap();
 
@@ -53,6 +54,8 @@ fn corpus(compiled: &[Compiled]) -> (String, Vec<Answers>) {
     let mut families = [0, 0];
     for c in compiled {
         let (chain, solver) = (c.longer_chain(), c.solver());
+        // As many as generated solvers have room for.
+        let room = if c.class.contains("swept") { 32 } else { 16 };
         let reference = c.solver().with_engine(Engine::Interpreter);
         for set in poses::sets(chain, &c.free, 12, Seed::new(9)) {
             for vector in &set.vectors {
@@ -67,7 +70,7 @@ fn corpus(compiled: &[Compiled]) -> (String, Vec<Answers>) {
                 let solve = |solver: &Solver| -> Answers {
                     let mut out = IkSolutions::new();
                     solver.solve(&pose, &free, &mut out);
-                    out.iter().take(16).map(<[f64]>::to_vec).collect()
+                    out.iter().take(room).map(<[f64]>::to_vec).collect()
                 };
                 let mut answers = solve(&solver);
                 let what = format!("{} at {} {vector:?}", chain.name, set.name);
@@ -75,7 +78,7 @@ fn corpus(compiled: &[Compiled]) -> (String, Vec<Answers>) {
                 compare(&what, near, &solve(&reference), &answers);
                 let mut out = IkSolutions::new();
                 solver.solve_with_families(&pose, &free, &mut out);
-                for family in out.families().iter().filter(|family| family.solution < 16) {
+                for family in out.families().iter().filter(|family| family.solution < room) {
                     answers.push([&family.direction[..], &family.interval].concat());
                     families[usize::from(family.path == FamilyPath::Curve)] += 1;
                 }

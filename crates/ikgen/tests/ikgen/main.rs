@@ -4,6 +4,7 @@
 
 mod arms;
 mod classes;
+mod coupled;
 mod families;
 mod generated;
 mod goals;

@@ -7,6 +7,8 @@ mod reach;
 mod spherical_wrist;
 mod three_parallel;
 
+pub(super) use reach::Line;
+
 use super::builder::Builder;
 use super::problem::Problem;
 

@@ -19,18 +19,18 @@ use crate::generate::facts::{Axis, feet, foot, parallel};
 
 /// An axis whose constants may depend on given values.
 #[derive(Clone, Copy)]
-pub(super) struct Line<'b> {
-    pub(super) direction: Vector<'b>,
-    pub(super) point: Vector<'b>,
+pub(in crate::generate) struct Line<'b> {
+    pub(in crate::generate) direction: Vector<'b>,
+    pub(in crate::generate) point: Vector<'b>,
 }
 
 impl<'b> Line<'b> {
-    pub(super) fn constant(b: &'b Builder, axis: &Axis) -> Self {
+    pub(in crate::generate) fn constant(b: &'b Builder, axis: &Axis) -> Self {
         Self { direction: b.vector(&axis.direction), point: b.vector(&axis.point) }
     }
 
     /// The line carried along by a motion about `axis`.
-    pub(super) fn moved(self, b: &'b Builder, axis: &Axis, step: Move<'b>) -> Self {
+    pub(in crate::generate) fn moved(self, b: &'b Builder, axis: &Axis, step: Move<'b>) -> Self {
         Self { direction: step.rotate(b, axis, self.direction), point: step.apply(b, axis, self.point) }
     }
 

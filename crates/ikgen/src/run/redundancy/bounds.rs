@@ -228,6 +228,6 @@ fn roots(kind: RootKind, x: &[Interval], slack: f64) -> Result<Vec<[Interval; 2]
             polynomial[0] = polynomial[0].wider(slack);
             Ok(trigonometric::roots(&polynomial)?.into_iter().map(unit).collect())
         }
-        RootKind::Six => Err(Undecided),
+        RootKind::Six | RootKind::Sweep => Err(Undecided),
     }
 }

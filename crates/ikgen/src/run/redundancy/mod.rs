@@ -193,7 +193,8 @@ impl Solver {
             first: Preferences { max_solutions: 1, near: None, ..preferences.clone() },
         };
         // Roots of eight waves take long to bound, six joints at once cannot be.
-        let general = program.uses(RootKind::Six) || program.uses(RootKind::Octic);
+        let jointly = program.uses(RootKind::Six) || program.uses(RootKind::Sweep);
+        let general = jointly || program.uses(RootKind::Octic);
         let width = options.width.max(100.0 * program.slack);
         let bounded = || (search.cells(low, high, width, options.cells), width);
         let between = || Some((search.between_changes([low, high], options)?, options.width));
@@ -205,7 +206,7 @@ impl Solver {
             let between = if widest_unknown(&cells) > NARROW { between() } else { None };
             between.or(Some((cells, width)))
         };
-        let sampled = known.is_none() && program.uses(RootKind::Six);
+        let sampled = known.is_none() && jointly;
         let (cells, width) =
             known.unwrap_or_else(|| if sampled { (search.points(low, high), width) } else { bounded() });
         let unknown = widest_unknown(&cells);

@@ -1,0 +1,313 @@
+//! Six unknowns of a loop of which five turn a joint each, while one slides, or moves several joints at once.
+//!
+//! For each value of that one the other five close the loop only by chance. With a sixth joint among them that does not turn,
+//! Raghavan and Roth's elimination (see [`six`](super::six)) gives a determinant that vanishes there: a smooth function of one variable.
+//! It is swept over all values that the variable may have, interval after interval, each so short that a polynomial is as good; its roots
+//! and the null vectors there give candidates as in the general case. The joint that does not turn may lie anywhere between the others, which
+//! are taken in any [order](super::six::Order).
+
+use super::eigen::MAX_SIZE;
+use super::elimination::{Measure, Shadow, Six, determinant, eliminate_still, shadow};
+use super::math::{cos_sin, sqrt};
+use super::null::{Pair, several, single};
+use super::piece::{Cosines, Piece, cosines};
+use super::six::{APART, Arranged, Candidates, NEARLY_REAL, ORDERS, arrange, close, nudged};
+use super::vector::{Line, Motion, dot, minus, times};
+
+/// Most joints of a loop.
+pub const MOST_LINES: usize = 9;
+
+/// Most orders that are tried.
+pub const MOST_ORDERS: usize = 3;
+
+/// Numbers that [`sweep_of`] takes: for each joint the direction of its line, a point on it, how it moves (zero for none, one for an
+/// unknown turn, two and three for a turn and a slide by the swept variable), and how far for each unit of that; rows of the goal's
+/// rotation, its place; orders as their code and one, zero for none; and where the variable is looked for (zero for a length, one for an
+/// angle of which a full turn changes nothing, two for other angles).
+pub const NUMBERS: usize = 8 * MOST_LINES + 12 + MOST_ORDERS + 1;
+
+/// Intervals at first.
+const INTERVALS: f64 = 16.0;
+
+/// Shortest interval, as part of all values.
+const SHORTEST: f64 = 1.0 / 16384.0;
+
+/// Most intervals of one order.
+const MOST_INTERVALS: usize = 200;
+
+/// Last coefficients below this part of the largest one: the polynomial is the function.
+const RESOLVED: f64 = 1e-9;
+
+/// Half an interval has coefficients of rounding, if they are not smaller than this part of those of the whole one.
+const ROUNDING: f64 = 0.1;
+
+/// The circle is cut here: off the multiples of 90 degrees.
+const CUT: f64 = 0.2137;
+
+/// A joint of the loop.
+#[derive(Clone, Copy)]
+struct Joint {
+    line: Line,
+    kind: u8,
+    ratio: f64,
+}
+
+/// A loop of joints, base to tip.
+struct Loop {
+    joints: [Joint; MOST_LINES],
+    goal: Motion,
+    measure: Measure,
+    /// How many of the five come before the swept joints, if none is among these.
+    before: Option<usize>,
+}
+
+impl Loop {
+    /// The other five at a value of the swept variable, and the joint that does not turn, in an order.
+    fn arranged(&self, x: f64, code: usize) -> Arranged {
+        let mut moved = Motion { rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], place: [0.0; 3] };
+        let still = still_joint(code);
+        let mut lines = [self.joints[0].line; 6];
+        let mut count = 0;
+        for joint in &self.joints {
+            let step = joint.ratio * x;
+            match joint.kind {
+                1 => {
+                    if count == still {
+                        count += 1;
+                    }
+                    lines[count] = moved.moved(&joint.line);
+                    count += 1;
+                }
+                2 => moved = moved.after(&joint.line.motion(cos_sin(step))),
+                3 => {
+                    moved.place =
+                        moved.moved(&Line { point: times(joint.line.direction, step), ..joint.line }).point
+                }
+                _ => {}
+            }
+        }
+        arrange(&lines, &self.goal.after(&moved.inverse()), code)
+    }
+
+    fn shadow(&self, loop_: &Arranged) -> Shadow {
+        shadow(&loop_.lines, &loop_.goal, &self.measure)
+    }
+}
+
+/// A loop in an order.
+struct Ordered<'a> {
+    loop_: &'a Loop,
+    code: usize,
+    /// The right side of the equations, where it does not change: the joint that does not turn is where the swept one is.
+    constant: Option<Shadow>,
+}
+
+impl Ordered<'_> {
+    fn eliminated(&self, x: f64) -> (Arranged, Six, f64) {
+        let loop_ = self.loop_.arranged(x, self.code);
+        let measure = &self.loop_.measure;
+        let still = |shadow: &Shadow| eliminate_still(&loop_.lines, loop_.swapped, measure, shadow);
+        let (six, volume) = match &self.constant {
+            Some(shadow) => (still(shadow), shadow.volume),
+            None => {
+                let shadow = self.loop_.shadow(&loop_);
+                (still(&shadow), shadow.volume)
+            }
+        };
+        (loop_, six, volume)
+    }
+
+    fn value(&self, x: f64) -> f64 {
+        let (_, six, volume) = self.eliminated(x);
+        volume * determinant(&six, [1.0, 0.0])
+    }
+}
+
+/// The number of the joint that does not turn: the third in the order.
+pub fn still_joint(code: usize) -> usize {
+    let place = (code % 12 / 2 + 2) % 6;
+    if code >= 12 { 5 - place } else { place }
+}
+
+/// Adds the candidates of one order; says whether they are all that there are.
+fn solve(loop_: &Loop, code: usize, span: [f64; 2], turns: bool, slack: f64, found: &mut Candidates) -> bool {
+    let table: Cosines = cosines();
+    let constant =
+        (loop_.before == Some(still_joint(code))).then(|| loop_.shadow(&loop_.arranged(0.0, code)));
+    let ordered = Ordered { loop_, code, constant };
+    let whole = span[1] - span[0];
+    let (mut at, mut width) = (span[0], whole / INTERVALS);
+    let (mut all, mut before) = (true, f64::MAX);
+    for _ in 0..MOST_INTERVALS {
+        let piece = Piece::new(&table, at, width, |x| ordered.value(x));
+        let rest = piece.rest();
+        let resolved = rest < RESOLVED * piece.largest;
+        if !resolved && rest < ROUNDING * before && width > SHORTEST * whole {
+            before = rest;
+            width *= 0.5;
+            continue;
+        }
+        all &= look(&ordered, &piece, turns, slack, found) && resolved;
+        at += width;
+        if at > span[1] - SHORTEST * whole {
+            return all;
+        }
+        before = f64::MAX;
+        if !resolved {
+            width *= 2.0;
+        } else if rest < 1e-3 * RESOLVED * piece.largest {
+            width *= 1.5;
+        }
+        if width > span[1] - at {
+            width = span[1] - at;
+        }
+    }
+    false
+}
+
+/// Adds the candidates of one interval; says whether its roots lie apart.
+fn look(ordered: &Ordered<'_>, piece: &Piece, turns: bool, slack: f64, found: &mut Candidates) -> bool {
+    const STILL: [f64; 2] = [1.0, 0.0];
+    let mut roots = [[0.0; 2]; MAX_SIZE];
+    let count = piece.roots(NEARLY_REAL + 5.0 * sqrt(slack), &mut roots);
+    let mut done = [false; MAX_SIZE];
+    let mut apart = true;
+    for i in 0..count {
+        let [x, imaginary] = roots[i];
+        if done[i] {
+            continue;
+        }
+        let (mut together, mut sum) = (0, 0.0);
+        let mut near = [false; MAX_SIZE];
+        for (j, [other, height]) in roots[..count].iter().enumerate() {
+            near[j] = (other - x).abs() + (height - imaginary).abs() < APART;
+            if near[j] {
+                together += 1;
+                sum += other;
+            }
+        }
+        if together > 1 {
+            // Several solutions that share the value, or nearly do.
+            let mean = sum / together as f64;
+            let (arranged, six, _) = ordered.eliminated(mean);
+            if several(&six, STILL, |pair| add(&arranged, pair, mean, turns, found)) == together {
+                done.iter_mut().zip(near).for_each(|(done, near)| *done |= near);
+                continue;
+            }
+            apart = false;
+        }
+        let x = if together == 1 && imaginary == 0.0 { refined(ordered, piece, x) } else { x };
+        let (arranged, six, _) = ordered.eliminated(x);
+        match single(&six, STILL) {
+            Some(pair) => add(&arranged, pair, x, turns, found),
+            None => apart = false,
+        }
+    }
+    apart
+}
+
+/// A root of the determinant near that of the polynomial.
+fn refined(ordered: &Ordered<'_>, piece: &Piece, start: f64) -> f64 {
+    let mut x = start;
+    for _ in 0..4 {
+        let change = -ordered.value(x) / piece.slope(x);
+        if !(change.abs() < NEARLY_REAL) {
+            break;
+        }
+        x += change;
+        if change.abs() < 1e-12 {
+            break;
+        }
+    }
+    x
+}
+
+/// Adds a candidate: the turns of the five in their order, then the swept variable.
+fn add(loop_: &Arranged, [tangent, other]: Pair, x: f64, turns: bool, found: &mut Candidates) {
+    let still = [1.0, 0.0];
+    let middle = if loop_.swapped { [still, other, tangent] } else { [still, tangent, other] };
+    let Some([q1, q2, q6]) = close(loop_, middle) else { return };
+    let mut all = [still; 6];
+    for (joint, turn) in loop_.joints.into_iter().zip([q1, q2, still, middle[1], middle[2], q6]) {
+        let number = if joint > loop_.joints[2] { joint - 1 } else { joint };
+        if joint != loop_.joints[2] {
+            all[number] = turn;
+        }
+    }
+    all[5] = if turns { cos_sin(x) } else { [x, 0.0] };
+    found.push(all);
+}
+
+/// Candidates for the joints of a loop, from plain numbers: the five unknown turns in order, then the swept variable as `[cos, sin]`
+/// or `[length, 0]`.
+///
+/// Slack is for poses at which that gave nothing, as in [`six`](super::six::six).
+pub fn sweep_of(x: &[f64; NUMBERS], slack: f64) -> Candidates {
+    let mut found = Candidates::NONE;
+    let vector = |i: usize| [x[i], x[i + 1], x[i + 2]];
+    let mut joints =
+        [Joint { line: Line { direction: [0.0; 3], point: [0.0; 3] }, kind: 0, ratio: 0.0 }; MOST_LINES];
+    for number in x {
+        if !(number.abs() < f64::INFINITY) {
+            return found;
+        }
+    }
+    let mut lines = [Line { direction: [0.0; 3], point: vector(3) }; MOST_LINES];
+    // How many of the five come before the first swept joint and before the last one.
+    let (mut unknown, mut first, mut last) = (0, 6, 0);
+    for (i, joint) in joints.iter_mut().enumerate() {
+        let line = Line { direction: vector(8 * i), point: vector(8 * i + 3) };
+        *joint = Joint { line, kind: x[8 * i + 6] as u8, ratio: x[8 * i + 7] };
+        unknown += usize::from(joint.kind == 1);
+        if joint.kind > 1 {
+            (first, last) = (if first < unknown { first } else { unknown }, unknown);
+        }
+        lines[i].point = if joint.kind > 0 { line.point } else { lines[0].point };
+    }
+    if unknown != 5 {
+        return found;
+    }
+    const GOAL: usize = 8 * MOST_LINES;
+    let goal = Motion { rows: [vector(GOAL), vector(GOAL + 3), vector(GOAL + 6)], place: vector(GOAL + 9) };
+    let goal = if slack > 0.0 { nudged(&goal, 0.1 * slack) } else { goal };
+    let turns = x[NUMBERS - 1] > 0.0;
+    let span = if x[NUMBERS - 1] == 1.0 {
+        [CUT - core::f64::consts::PI, CUT + core::f64::consts::PI]
+    } else if turns {
+        [-core::f64::consts::PI, core::f64::consts::PI]
+    } else {
+        let most = longest(&joints, &goal);
+        [-most, most]
+    };
+    let before = (first == last).then_some(first);
+    let loop_ = Loop { joints, goal, measure: Measure::of(&lines, lines[0].point), before };
+    for code in &x[GOAL + 12..NUMBERS - 1] {
+        if *code > 0.0 {
+            let code = (*code as usize - 1) % ORDERS;
+            if solve(&loop_, code, span, turns, slack, &mut found) && slack == 0.0 && found.count() > 0 {
+                break;
+            }
+        }
+    }
+    found
+}
+
+/// How far a slide can go at most: the other joints reach no farther.
+fn longest(joints: &[Joint; MOST_LINES], goal: &Motion) -> f64 {
+    let length = |a: [f64; 3], b: [f64; 3]| {
+        let d = minus(a, b);
+        sqrt(dot(d, d))
+    };
+    let first = joints[0].line.point;
+    let (mut last, mut sum, mut ratio) = (first, 0.0, 0.0f64);
+    for joint in joints {
+        if joint.kind > 0 {
+            sum += length(joint.line.point, last);
+            last = joint.line.point;
+        }
+        if joint.kind == 3 {
+            ratio = ratio.max(joint.ratio.abs());
+        }
+    }
+    1.01 * (sum + length(goal.moved(&Line { direction: first, point: last }).point, first)) / ratio
+}
