@@ -14,6 +14,7 @@ pub mod mesh;
 pub mod model;
 pub mod rng;
 pub mod robot;
+pub mod scan;
 pub mod so3;
 pub mod spec;
 pub mod srdf;
