@@ -26,6 +26,7 @@ const TARGETS: &[Target] = &[
     ("grasps", &["acronym.json", "isaac_grasp.yaml", "npz"]),
     ("joint_limits", &["yaml"]),
     ("mesh", &["dae", "obj", "stl"]),
+    ("scan", &["csv", "npy", "pcd", "ply", "png", "xyz"]),
     ("program", &["ik"]),
     ("spec", &["toml"]),
     ("srdf", &["srdf"]),

@@ -56,6 +56,9 @@ pub struct Obstacle {
     pub geometry: Arc<Vec<Geometry>>,
     /// `world_from_obstacle`.
     pub world_from_obstacle: Pose,
+    /// Points of its clouds that are within this distance of the robot where it starts are the robot's own, and left out when a
+    /// session is opened; metres. `None`: all count.
+    pub without_robot: Option<f64>,
 }
 
 /// A thing with a joint of its own: a door, a drawer, a lever. Its links are obstacles of the task as well, where they stand at

@@ -8,6 +8,7 @@ mod artefact;
 mod description;
 mod grasps;
 mod program;
+mod scan;
 mod spec;
 mod surroundings;
 
@@ -29,6 +30,7 @@ pub const TARGETS: &[Target] = &[
     Target { name: "joint_limits", run: description::joint_limits },
     Target { name: "mesh", run: description::mesh },
     Target { name: "program", run: program::program },
+    Target { name: "scan", run: scan::scan },
     Target { name: "spec", run: spec::spec },
     Target { name: "srdf", run: description::srdf },
     Target { name: "urdf", run: description::urdf },

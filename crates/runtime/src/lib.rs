@@ -6,6 +6,7 @@
 pub mod execute;
 pub mod film;
 pub mod motion;
+mod own_points;
 pub mod picture;
 pub mod record;
 pub mod session;

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use crate::own_points::without_own_points;
 use robotc_core::task::Task;
 use robotc_core::{Configuration, Kinematics, LinkIdx, LinkPoses, SerialChain, TypedVec, World};
 use robotc_ikgen::Solver;
@@ -99,6 +100,7 @@ impl Session {
                 covers[link] = knowledge.load::<SphereCover>(&OfShape::Link(link))?;
             }
         }
+        let task = without_own_points(&task, &kinematics, &links);
         let objects = (0..task.objects.len()).map(OfShape::Object);
         let covers_of_objects = objects.clone().map(|object| knowledge.load::<SphereCover>(&object));
         let object_covers = covers_of_objects.collect::<Result<_, _>>()?;

@@ -549,6 +549,19 @@ pub const CODES: &[CodeInfo] = &[
         "unknown article",
         "A goal opens something that is not an `[[article]]` of the task: only doors, drawers and levers have a joint to move.",
     ),
+    entry(
+        "R0511",
+        "measurements cannot be used",
+        "The file of a point cloud or of a height field is in no format that is read, is cut off, or what it holds is no cloud or no \
+         height field: no points, places farther out than 10 km, fewer than two rows. Points are read from PLY, PCD, NPY and text \
+         files, heights from grey PNG, NPY and text files.",
+    ),
+    entry(
+        "R0512",
+        "shades and heights",
+        "The shades of an image are heights only once it is said how high black and white are, with `range`. Other files hold \
+         heights themselves; they have `units` and no `range`.",
+    ),
 ];
 
 #[cfg(test)]

@@ -80,6 +80,13 @@ impl PointCloud {
         &self.points
     }
 
+    /// The cloud of those points that are `kept`; `None` when there is none.
+    pub fn filtered(&self, kept: impl FnMut(&Point3<f64>) -> bool) -> Option<Self> {
+        let mut kept = kept;
+        let points = self.points.iter().filter(|point| kept(point)).copied().collect();
+        Self::new(points, self.radius).ok()
+    }
+
     /// Radius of each ball, metres.
     pub fn radius(&self) -> f64 {
         self.radius

@@ -69,6 +69,7 @@ pub(super) fn read(
             name: format!("{name}/{}", model.links()[link].name),
             geometry: std::sync::Arc::new(model.links()[link].collisions.clone()),
             world_from_obstacle: world_from_root * poses.root_from(link),
+            without_robot: None,
         });
     }
     let friction = table.number("friction").unwrap_or(0.5);

@@ -9,12 +9,13 @@ use nalgebra::{Point3, Vector3};
 use super::document::{Node, Table};
 use super::file;
 use crate::diag::{Diagnostic, Diagnostics, Span};
-use crate::geom::Aabb;
+use crate::geom::{Aabb, HeightField, PointCloud};
 use crate::mesh::{LoadedMesh, MeshFormat, UpAxis};
 use crate::model::{Geometry, Origin, Shape, TriMesh};
+use crate::scan::{self, ScanError};
 use crate::system::{MeshFileError, System};
 
-/// Extents, in metres, outside of which a mesh is more likely in another unit than meant so.
+/// Extents, in metres, outside of which a shape is more likely in another unit than meant so.
 const USUAL_EXTENT: (f64, f64) = (0.002, 10.0);
 
 /// Reads shapes; things made from the same file in the same way share their mesh.
@@ -44,7 +45,11 @@ impl<'a> Shapes<'a> {
             Some((uri, place)) => {
                 Shape::Mesh { mesh: self.mesh(table, uri, place, diagnostics)?, uri: uri.to_owned() }
             }
-            None => primitive(table)?,
+            None => match (table.table("cloud"), table.table("heights")) {
+                (Some(cloud), _) => self.cloud(cloud, diagnostics)?,
+                (_, Some(heights)) => self.heights(heights, diagnostics)?,
+                _ => primitive(table)?,
+            },
         };
         Some(Arc::new(vec![Geometry { origin: Origin::default(), shape, colour }]))
     }
@@ -58,8 +63,7 @@ impl<'a> Shapes<'a> {
     ) -> Option<Arc<TriMesh>> {
         let path = file::resolve(self.system, self.folder, uri);
         let up = table.text("up").map(|(axis, _)| axis.to_owned());
-        let unit = table.text("units").and_then(|(unit, _)| metres(unit)).unwrap_or(1.0);
-        let factor = unit * table.number("scale").filter(|x| *x > 0.0).unwrap_or(1.0);
+        let factor = unit(table) * table.number("scale").filter(|x| *x > 0.0).unwrap_or(1.0);
         let key = (path.clone(), up.clone(), factor.to_bits());
         if let Some(known) = self.meshes.get(&key) {
             return Some(known.clone());
@@ -113,20 +117,105 @@ impl<'a> Shapes<'a> {
         None
     }
 
-    fn check_extent(&self, mesh: &TriMesh, place: Span, diagnostics: &mut Diagnostics) {
-        let Some(bounds) = Aabb::of_points(&mesh.vertices) else { return };
-        let largest = bounds.size().max();
-        if largest < USUAL_EXTENT.0 || largest > USUAL_EXTENT.1 {
-            diagnostics.push(
-                Diagnostic::warning(
-                    "R0507",
-                    format!("the mesh is {} m large", (largest * 1e4).round() / 1e4),
-                )
-                .at(place, "this mesh")
-                .hint("its `units` are \"m\" unless another unit is written: \"cm\", \"mm\" or \"inch\""),
-            );
+    /// A table with a `file` of measurements: what a reader makes of it.
+    fn measured<T>(
+        &self,
+        table: &Table,
+        read: impl FnOnce(&[u8]) -> Result<T, ScanError>,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<T> {
+        let (uri, place) = table.text("file")?;
+        let path = file::resolve(self.system, self.folder, uri);
+        let finding = match self.system.read(&path) {
+            Ok(bytes) => match read(&bytes) {
+                Ok(found) => return Some(found),
+                Err(error) => Diagnostic::error("R0511", format!("{}: {error}", path.display())),
+            },
+            Err(error) => Diagnostic::unreadable(&path, &error),
+        };
+        diagnostics.push(finding.at(place, "named here"));
+        None
+    }
+
+    fn cloud(&self, table: &Table, diagnostics: &mut Diagnostics) -> Option<Shape> {
+        let (uri, place) = table.text("file")?;
+        let found = self.measured(table, scan::points, diagnostics)?;
+        let unit = unit(table);
+        let points = found.points.into_iter().map(|p| Point3::from(p.coords * unit)).collect();
+        let radius = table.number("radius").filter(|x| *x > 0.0)?;
+        match PointCloud::new(points, radius) {
+            Ok(cloud) => {
+                check_size(&cloud.bounds(), "the cloud", place, diagnostics);
+                Some(Shape::Cloud { cloud: Arc::new(cloud), uri: uri.to_owned() })
+            }
+            Err(error) => {
+                diagnostics.push(Diagnostic::error("R0511", error.to_string()).at(place, "this cloud"));
+                None
+            }
         }
     }
+
+    fn heights(&self, table: &Table, diagnostics: &mut Diagnostics) -> Option<Shape> {
+        let (uri, place) = table.text("file")?;
+        let grid = self.measured(table, scan::grid, diagnostics)?;
+        let range = table.get("range").and_then(Node::array::<2>);
+        let (scale, offset) = match (grid.full, range) {
+            (Some(full), Some([black, white])) => ((white - black) / full, black),
+            (None, None) => (unit(table), 0.0),
+            (Some(_), None) => {
+                let what = "the heights of black and of white are not known";
+                diagnostics.push(Diagnostic::error("R0512", what).at(place, "an image").expected("`range`"));
+                return None;
+            }
+            (None, Some(_)) => {
+                let at = table.entry("range").map_or(place, |entry| entry.key_span);
+                diagnostics.push(
+                    Diagnostic::error("R0512", "the file has heights, not shades of grey")
+                        .at(at, "nothing to apply it to")
+                        .expected("`range` for images only"),
+                );
+                return None;
+            }
+        };
+        let missing = table.number("missing");
+        let height = |value: f64| if Some(value) == missing { f64::NAN } else { offset + scale * value };
+        let heights = grid.values.into_iter().map(height).collect();
+        let spacing = table.get("spacing").and_then(Node::array::<2>)?;
+        match HeightField::new(grid.columns, heights, spacing, table.number("floor")) {
+            Ok(field) => {
+                check_size(&field.bounds(), "the height field", place, diagnostics);
+                Some(Shape::HeightField { field: Arc::new(field), uri: uri.to_owned() })
+            }
+            Err(error) => {
+                diagnostics
+                    .push(Diagnostic::error("R0511", error.to_string()).at(place, "this height field"));
+                None
+            }
+        }
+    }
+
+    fn check_extent(&self, mesh: &TriMesh, place: Span, diagnostics: &mut Diagnostics) {
+        let Some(bounds) = Aabb::of_points(&mesh.vertices) else { return };
+        check_size(&bounds, "the mesh", place, diagnostics);
+    }
+}
+
+/// Warns of what is of a size that is most often that of another unit.
+fn check_size(bounds: &Aabb, what: &str, place: Span, diagnostics: &mut Diagnostics) {
+    let largest = bounds.size().max();
+    if largest < USUAL_EXTENT.0 || largest > USUAL_EXTENT.1 {
+        let size = (largest * 1e4).round() / 1e4;
+        diagnostics.push(
+            Diagnostic::warning("R0507", format!("{what} is {size} m large"))
+                .at(place, what.replacen("the", "this", 1))
+                .hint("its `units` are \"m\" unless another unit is written: \"cm\", \"mm\" or \"inch\""),
+        );
+    }
+}
+
+/// The `units` of a table, in metres.
+fn unit(table: &Table) -> f64 {
+    table.text("units").and_then(|(unit, _)| metres(unit)).unwrap_or(1.0)
 }
 
 /// The mesh with its `up` axis turned to z.

@@ -84,6 +84,7 @@ fn read(
             name: name.to_owned(),
             geometry: geometry.unwrap_or_default(),
             world_from_obstacle: lookup::origin(obstacle, "pose").pose(),
+            without_robot: obstacle.table("cloud").and_then(|cloud| cloud.number("without_robot")),
         });
     }
     let standing = obstacles.clone();

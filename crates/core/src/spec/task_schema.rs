@@ -4,6 +4,8 @@ use super::schema::{Key, Kind, Length, POSE, Range, Rule, TableSchema, Text};
 
 const SIZE: Kind = Kind::List(&Kind::Number(Range::POSITIVE), Length::Exactly(3));
 const SHAPES: Rule = Rule::ExactlyOne(&["mesh", "box", "cylinder", "capsule", "sphere"]);
+const OBSTACLE_SHAPES: Rule =
+    Rule::ExactlyOne(&["mesh", "box", "cylinder", "capsule", "sphere", "cloud", "heights"]);
 const MESH_ONLY: Rule = Rule::OnlyWith { keys: &["units", "up", "scale"], with: "mesh" };
 
 const NAME: Key =
@@ -14,6 +16,11 @@ const UNITS: Key = Key::optional(
     "units",
     Kind::Choice(&["m", "cm", "mm", "inch"]),
     "Unit of the numbers in the mesh file. Default: metres, or what a COLLADA file says.",
+);
+const FILE_UNITS: Key = Key::optional(
+    "units",
+    Kind::Choice(&["m", "cm", "mm", "inch"]),
+    "Unit of the numbers in the file. Default: metres.",
 );
 const UP: Key = Key::optional(
     "up",
@@ -103,8 +110,87 @@ static OBJECT: TableSchema = TableSchema {
 
 static OBSTACLE: TableSchema = TableSchema {
     doc: "Something that stays where it is.",
-    keys: &[NAME, MESH, UNITS, UP, SCALE, BOX, CYLINDER, CAPSULE, SPHERE, COLOUR, WORLD_POSE],
-    rules: &[SHAPES, MESH_ONLY],
+    keys: &[
+        NAME,
+        MESH,
+        UNITS,
+        UP,
+        SCALE,
+        BOX,
+        CYLINDER,
+        CAPSULE,
+        SPHERE,
+        Key::optional("cloud", Kind::Table(&CLOUD), "Measured points, in the frame of the file."),
+        Key::optional(
+            "heights",
+            Kind::Table(&HEIGHTS),
+            "Measured heights on a grid, solid below; the origin is at the first sample.",
+        ),
+        COLOUR,
+        WORLD_POSE,
+    ],
+    rules: &[OBSTACLE_SHAPES, MESH_ONLY],
+};
+
+static CLOUD: TableSchema = TableSchema {
+    doc: "Measured points, each with a ball about it.",
+    keys: &[
+        Key::required(
+            "file",
+            Kind::Text(Text::Path),
+            "PLY, PCD, NPY or text file with points, relative to this file. Points that are no numbers are left out.",
+        ),
+        Key::required(
+            "radius",
+            Kind::Number(Range::POSITIVE),
+            "Radius of each ball. With half the distance of neighbours or more, surfaces have no holes.",
+        )
+        .unit("m"),
+        FILE_UNITS,
+        Key::optional(
+            "without_robot",
+            Kind::Number(Range::between(0.0, 1.0)),
+            "Points this near to the robot where it starts are its own and left out. Default: all points count.",
+        )
+        .unit("m"),
+    ],
+    rules: &[],
+};
+
+static HEIGHTS: TableSchema = TableSchema {
+    doc: "Measured heights on a regular grid: x grows along a row, y from row to row, the first row being that at the top of an image or text.",
+    keys: &[
+        Key::required(
+            "file",
+            Kind::Text(Text::Path),
+            "Grey PNG, NPY or text file with heights, relative to this file. Where it has no number, or a transparent place, there is a hole.",
+        ),
+        Key::required(
+            "spacing",
+            Kind::List(&Kind::Number(Range::POSITIVE), Length::Exactly(2)),
+            "Distance of neighbours along x and y.",
+        )
+        .unit("m"),
+        Key::optional(
+            "range",
+            Kind::List(&Kind::Number(Range::ANY), Length::Exactly(2)),
+            "Heights of black and of white. Needed for images.",
+        )
+        .unit("m"),
+        FILE_UNITS,
+        Key::optional(
+            "missing",
+            Kind::Number(Range::ANY),
+            "A number of the file that says that nothing was measured. Default: none does.",
+        ),
+        Key::optional(
+            "floor",
+            Kind::Number(Range::ANY),
+            "z down to which it is solid. Default: one spacing below the lowest height.",
+        )
+        .unit("m"),
+    ],
+    rules: &[],
 };
 
 static ARTICLE: TableSchema = TableSchema {

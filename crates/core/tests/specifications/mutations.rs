@@ -71,13 +71,17 @@ fn move_line(text: &mut Vec<char>, at: usize, rng: &mut Rng) {
 fn mutated_specifications_never_panic() {
     let disk = Disk::of_checkout("tests/specs");
     let mut system = MemorySystem::new();
-    for file in ["files/arm.urdf", "files/wedge.obj", "files/small.robot.toml"] {
+    for file in
+        ["files/arm.urdf", "files/wedge.obj", "files/small.robot.toml", "files/scan.xyz", "files/heights.csv"]
+    {
         system.insert(file, disk.read(Path::new(file)).unwrap());
     }
     let robot = String::from_utf8(disk.read(Path::new("files/small.robot.toml")).unwrap()).unwrap();
     let task = "format = 1\nname = \"t\"\nrobot = \"small.robot.toml\"\nseed = 3\nstart = { elbow = 0.5 }\n\
                 [[object]]\nname = \"wedge\"\nmesh = \"wedge.obj\"\nup = \"y\"\nmass = 0.1\ncolour = \"#102030\"\n\
                 [[obstacle]]\nname = \"can\"\ncylinder = { radius = 0.1, length = 0.2 }\n\
+                [[obstacle]]\nname = \"scan\"\ncloud = { file = \"scan.xyz\", radius = 0.01 }\n\
+                [[obstacle]]\nname = \"hill\"\nheights = { file = \"heights.csv\", spacing = [0.1, 0.2], floor = -2.0 }\n\
                 [[goal]]\nplace = \"wedge\"\nregion = { pose = { xyz = [0, 0, 1] }, size = [0.1, 0.2] }\n\
                 [parameters.grasp_set]\nrolls = 4\n";
     let mut rng = Seed::new(7).rng();

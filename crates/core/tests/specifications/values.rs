@@ -95,3 +95,22 @@ fn meshes_stand_up_and_lie_on_surfaces() {
     assert_eq!(*object, 1);
     assert!(matches!(destination, Destination::Pose { any_yaw: true, .. }));
 }
+
+#[test]
+fn measurements_become_solids() {
+    let disk = Disk::of_checkout("tests/specs");
+    let mut sources = Sources::new();
+    let (spec, found) = load_task(&disk, &mut sources, Path::new("files/seen.task.toml"), &parameters());
+    assert!(found.is_empty(), "{}", found.to_plain_text(&sources));
+    let obstacles = spec.unwrap().task.obstacles.clone();
+    let Shape::Cloud { cloud, uri } = &obstacles[0].geometry[0].shape else { panic!("a cloud") };
+    assert_eq!((cloud.points().len(), cloud.radius(), uri.as_str()), (2, 0.02, "scan.xyz"));
+    assert!((cloud.points()[0].x - 0.005).abs() < 1e-12 && obstacles[0].without_robot == Some(0.05));
+    let Shape::HeightField { field, .. } = &obstacles[1].geometry[0].shape else { panic!("a height field") };
+    let expected = [0.0, 100.0, 200.0, 50.0, 65535.0, 250.0].map(|v| 1.0 - v / 65535.0);
+    assert!(field.heights().iter().zip(expected).all(|(h, e)| (h - e).abs() < 1e-12));
+    assert_eq!((field.rows(), field.columns(), field.floor()), (2, 3, -0.5));
+    let Shape::HeightField { field, .. } = &obstacles[2].geometry[0].shape else { panic!("a height field") };
+    let known: Vec<bool> = field.heights().iter().map(|h| !h.is_nan()).collect();
+    assert_eq!((known, field.floor()), (vec![true, true, true, true, true, false], -0.5));
+}

@@ -129,6 +129,7 @@ pub(crate) fn spec() -> Spec {
             name: "table".into(),
             geometry: Arc::new(vec![cuboid([1.0, 1.0, 0.04], [0.0; 3])]),
             world_from_obstacle: Pose::translation(0.6, 0.0, 0.2),
+            without_robot: None,
         },
         articles: Vec::new(),
         given: coarse(),
@@ -192,6 +193,7 @@ impl Spec {
                 name: format!("{}/{}", article.name, article.model.links()[*link].name),
                 geometry: Arc::new(article.model.links()[*link].collisions.clone()),
                 world_from_obstacle: article.world_from_root,
+                without_robot: None,
             })
         })
     }
