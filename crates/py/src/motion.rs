@@ -9,7 +9,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use robotc_planning::problem::{HeldDocument, PoseDocument};
-use robotc_planning::{Budget, Interrupt, PlanningProblem, Registry};
+use robotc_planning::{Interrupt, PlanningProblem, Registry};
 use robotc_runtime::motion::interrupted;
 
 use crate::arrays;
@@ -68,6 +68,7 @@ pub(crate) struct Wanted<'py> {
     pub(crate) poses: Vec<PyReadonlyArray2<'py, f64>>,
     pub(crate) start: Option<PyReadonlyArray1<'py, f64>>,
     pub(crate) seed: Option<u64>,
+    pub(crate) race: Option<u32>,
     pub(crate) time_limit: Option<f64>,
     pub(crate) progress: Option<Py<PyAny>>,
 }
@@ -90,6 +91,7 @@ pub(crate) fn plan_motion(
         problem.tool_goals.push(PoseDocument::of(&arrays::pose(pose)?));
     }
     problem.seed = wanted.seed.unwrap_or(problem.seed);
+    problem.race = wanted.race.unwrap_or(problem.race);
     problem.time_limit = wanted.time_limit.or(problem.time_limit);
     problem.check().map_err(|error| PyValueError::new_err(error.to_string()))?;
     let start = Instant::now();
@@ -106,7 +108,8 @@ pub(crate) fn plan_motion(
             }
             interrupted(&problem, elapsed, interrupts.stop())
         };
-        let motion = session.solve_motion(&problem, &Registry::standard(), &Budget::new(&interrupt));
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let motion = session.solve_motion(&problem, &Registry::standard(), threads, &interrupt);
         (motion, start.elapsed().as_secs_f64())
     })?;
     let motion = motion.map_err(|error| match error {

@@ -78,7 +78,7 @@ impl Session {
 
     /// Plans a free motion of the arm to one of many goals.
     #[pyo3(signature = (goals = None, poses = vec![], start = None, held = None, bodies = BTreeMap::new(),
-        joints = BTreeMap::new(), problem = None, seed = None, time_limit = None, progress = None))]
+        joints = BTreeMap::new(), problem = None, seed = None, time_limit = None, progress = None, race = None))]
     fn plan_motion(
         &self,
         py: Python<'_>,
@@ -92,9 +92,10 @@ impl Session {
         seed: Option<u64>,
         time_limit: Option<f64>,
         progress: Option<Py<PyAny>>,
+        race: Option<u32>,
     ) -> PyResult<Motion> {
         let given = Given { problem, bodies, joints, held };
-        let wanted = Wanted { goals, poses, start, seed, time_limit, progress };
+        let wanted = Wanted { goals, poses, start, seed, race, time_limit, progress };
         motion::plan_motion(py, &self.session, &given, &wanted)
     }
 

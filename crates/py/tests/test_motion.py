@@ -34,6 +34,15 @@ def test_goals(session):
     assert session.validate(motion.path) is None
 
 
+def test_races(session):
+    goals = np.array([turned(session)])
+    first = session.plan_motion(goals=goals, seed=5, race=3)
+    np.testing.assert_array_equal(first.path, session.plan_motion(goals=goals, seed=5, race=3).path)
+    assert session.validate(first.path) is None
+    with pytest.raises(ValueError, match="race is 0"):
+        session.plan_motion(goals=goals, race=0)
+
+
 def test_poses(session):
     pose = session.tool(session.start)
     pose[2, 3] += 0.04

@@ -7,11 +7,15 @@ use robotc_core::{BodyIdx, Configuration, LinkIdx, Pose, Trajectory};
 use robotc_planning::edge::{Blocked, walk_edge};
 use robotc_planning::lanes::{LaneChecker, LaneMemory, LaneRobot, Width};
 use robotc_planning::manipulation::gripper_links;
+use robotc_planning::motion::{Race, race};
 use robotc_planning::pose_goals::PoseGoals;
-use robotc_planning::problem::{PathFailureReason, PoseDocument, ProblemError, SolveFailure, Solved, solve};
+use robotc_planning::problem::{
+    PathFailureReason, PoseDocument, ProblemError, SolveFailure, Solved, solve_racer,
+};
 use robotc_planning::scene::{Grip, RobotChecker, Rules, Scene};
 use robotc_planning::{
-    Budget, Constraint, EdgeChecker, Interrupt, Obstruction, PlanningProblem, Registry, Space, time_path,
+    Budget, Constraint, EdgeChecker, GoalSampler, Interrupt, Obstruction, PlanningProblem, Registry, Space,
+    time_path,
 };
 use thiserror::Error;
 
@@ -100,13 +104,16 @@ impl Session {
     }
 
     /// Solves a problem with the planner that it names. Motions are proven free in [lanes](robotc_planning::lanes), unless the problem
-    /// has a constraint or asks for jitter: then they are looked at in steps of its resolution. The result depends on the problem alone unless the budget ends the search.
+    /// has a constraint or asks for jitter: then they are looked at in steps of its resolution. Searches that race share up to
+    /// `threads` threads. The result depends on the problem alone unless `interrupt` ends the search.
     pub fn solve_motion(
         &self,
         problem: &PlanningProblem,
         registry: &Registry,
-        budget: &Budget<'_>,
+        threads: usize,
+        interrupt: &(dyn Fn() -> Option<Interrupt> + Sync),
     ) -> Result<Motion, MotionError> {
+        problem.check()?;
         let situation = self.situation(problem)?;
         let space = self.space_of(problem)?;
         let constraint = self.constraint(problem)?;
@@ -116,30 +123,38 @@ impl Session {
             .iter()
             .map(|p| p.pose().ok_or(ProblemError::Pose("tool_goals")))
             .collect::<Result<_, _>>()?;
-        let mut checker =
-            self.checker(&situation, (problem, &space), problem.margin, problem.resolution, constraint);
-        let for_goals =
-            self.checker(&situation, (problem, &space), problem.margin, problem.resolution, constraint);
+        let step_by_step =
+            || self.checker(&situation, (problem, &space), problem.margin, problem.resolution, constraint);
         let lanes = self.lanes(&situation, problem);
-        let mut memory = LaneMemory::default();
         let rules = self.rules(&situation, problem.margin);
-        let mut in_lanes = lanes.as_ref().map(|lanes| {
-            LaneChecker::with_rules(lanes, &situation.scene, &space, &rules, Width::widest(), &mut memory)
-        });
-        let rng = problem.random_seed().split("goals").rng();
         let (arm, rounds) = (self.arm(), self.options().free_samples as usize);
-        let mut goals = PoseGoals::new(arm, for_goals, &problem.goals, &poses, &problem.start, rounds, rng);
-        let sampler = (!poses.is_empty()).then_some(&mut goals as &mut dyn robotc_planning::GoalSampler);
-        let searcher: &mut dyn EdgeChecker = match &mut in_lanes {
-            Some(in_lanes) => in_lanes,
-            None => &mut checker,
+        let search = |memory: &mut LaneMemory, racer: u32, budget: &Budget<'_>| {
+            let rng = problem.racer_seed(racer).split("goals").rng();
+            let mut goals =
+                PoseGoals::new(arm, step_by_step(), &problem.goals, &poses, &problem.start, rounds, rng);
+            let sampler = (!poses.is_empty()).then_some(&mut goals as &mut dyn GoalSampler);
+            let mut solved = match &lanes {
+                Some(lanes) => {
+                    let (scene, width) = (&situation.scene, Width::widest());
+                    let mut checker = LaneChecker::with_rules(lanes, scene, &space, &rules, width, memory);
+                    solve_racer(registry, problem, &mut checker, sampler, constraint, budget, racer)
+                }
+                None => {
+                    solve_racer(registry, problem, &mut step_by_step(), sampler, constraint, budget, racer)
+                }
+            }?;
+            if !poses.is_empty() {
+                solved.goal = goals.numbers()[solved.goal];
+            }
+            Ok(solved)
         };
-        let solved = solve(registry, problem, searcher, sampler, constraint, budget);
-        let mut solved = solved.map_err(|failure| self.explain(&situation, &failure))?;
-        if !poses.is_empty() {
-            solved.goal = goals.numbers()[solved.goal];
-        }
-        let timed = time_path(&mut checker, &solved.path, arm.limits(), &self.options().timing);
+        let racing = Race { racers: problem.race, ..Race::default() };
+        let workers = threads.clamp(1, problem.race as usize);
+        let mut memory: Vec<LaneMemory> = (0..workers).map(|_| LaneMemory::default()).collect();
+        let (first, others) = memory.split_first_mut().expect("there is one worker at least");
+        let solved = race(first, others, racing, &search, interrupt);
+        let solved = solved.map_err(|failure| self.explain(&situation, &failure))?;
+        let timed = time_path(&mut step_by_step(), &solved.path, arm.limits(), &self.options().timing);
         let trajectory = timed
             .into_trajectory(arm.dofs().to_vec(), arm.names().to_vec())
             .expect("times of a timed path grow");

@@ -32,7 +32,7 @@ fn mistakes_are_named() {
     let unknown = run("gird", &problem().replace("\"grid\"", "\"gird\""));
     let message = String::from_utf8_lossy(&unknown.stderr).into_owned();
     assert!(
-        message.contains("there is no planner gird; there are rrt_connect, rrt, straight, grid"),
+        message.contains("there is no planner gird; there are rrt_connect, rrt_lazy, rrt, straight, grid"),
         "{message}"
     );
     let wrong = run("sead", &problem().replace("\"seed\"", "\"sead\""));

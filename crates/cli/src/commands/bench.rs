@@ -11,6 +11,7 @@ use robotc_core::urdf::{self, MeshPolicy};
 use robotc_core::{Sources, srdf};
 use robotc_kb::os::OsSystem;
 use robotc_planning::bench::{self, BenchOptions, BenchRobot, ProblemSet, Report, Summary};
+use robotc_planning::motion::{SAMPLINGS, Sampling};
 
 use super::bench_tasks;
 use super::compile::write_whole;
@@ -82,6 +83,9 @@ struct Motion {
     /// Searches that race for the first path, each on a thread of its own; the path does not depend on which thread is faster
     #[arg(long, value_name = "N", default_value_t = BenchOptions::default().racers, value_parser = clap::value_parser!(u32).range(1..=64))]
     race: u32,
+    /// How states are drawn that searches grow towards
+    #[arg(long, value_name = "NAME", default_value = SAMPLINGS[0].name, value_parser = SAMPLINGS.each_ref().map(|s| s.name))]
+    sampling: String,
     /// Iterations after which a search gives up
     #[arg(long, value_name = "N", default_value_t = BenchOptions::default().motion.search.max_iterations)]
     iterations: u32,
@@ -142,6 +146,7 @@ fn motion(args: &Motion) -> Outcome {
     let (robot, ready_s) = robot(&args.input, &set, &now)?;
     let mut options = BenchOptions { seeds: args.seeds, racers: args.race, ..BenchOptions::default() };
     options.motion.search.max_iterations = args.iterations;
+    options.motion.search.sampling = Sampling::named(&args.sampling).unwrap_or_default();
     let mut progress = Progress::new();
     let (mut done, total) = (0, set.problems.len());
     let mut finished = |row: &bench::Row| {

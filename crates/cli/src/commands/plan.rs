@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use clap::Args;
 use robotc_kb::Project;
-use robotc_planning::{Budget, PlanningProblem, Registry};
+use robotc_planning::problem::MOST_RACERS;
+use robotc_planning::{PlanningProblem, Registry};
 use robotc_runtime::motion::interrupted;
 use robotc_runtime::{Motion, Session};
 use serde::Serialize;
@@ -31,6 +32,9 @@ pub(crate) struct Plan {
     /// Write the path, and the timed motion along it
     #[arg(long, value_name = "FILE.json")]
     output: Option<PathBuf>,
+    /// Searches that race, each with a stream of its own, on as many threads as there are; instead of the problem's `race`
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_RACERS)))]
+    race: Option<u32>,
     /// Do not plan: tell where a path (the key `path` of a file) first meets something
     #[arg(long, value_name = "FILE.json", conflicts_with = "output")]
     validate: Option<PathBuf>,
@@ -55,7 +59,8 @@ pub(crate) fn run(args: &Plan) -> Outcome {
     }
     let file = args.problem.as_deref().unwrap_or(Path::new(""));
     let wrong = |error: &dyn std::fmt::Display| Failure::Input(format!("{}: {error}", file.display()));
-    let problem = session.read_problem(&read(file)?).map_err(|error| wrong(&error))?;
+    let mut problem = session.read_problem(&read(file)?).map_err(|error| wrong(&error))?;
+    problem.race = args.race.unwrap_or(problem.race);
     match &args.validate {
         Some(path) => validate(&session, &problem, path),
         None => plan(&session, &problem, args.output.as_deref()),
@@ -69,7 +74,8 @@ fn read(path: &Path) -> Outcome<String> {
 fn plan(session: &Session, problem: &PlanningProblem, output: Option<&Path>) -> Outcome {
     let start = Instant::now();
     let interrupt = || interrupted(problem, start.elapsed().as_secs_f64(), knowledge::interrupted());
-    let motion = session.solve_motion(problem, &Registry::standard(), &Budget::new(&interrupt));
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let motion = session.solve_motion(problem, &Registry::standard(), threads, &interrupt);
     let motion = motion.map_err(|error| Failure::Input(error.to_string()))?;
     let seconds = start.elapsed().as_secs_f64();
     let Motion { solved, trajectory } = &motion;

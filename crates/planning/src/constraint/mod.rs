@@ -10,8 +10,8 @@ pub use upright::Upright;
 
 /// A path constraint that planners can move states onto (thesis algorithms 3.2 and 3.3).
 ///
-/// The edge checker refuses states that violate it; projection makes samples and extensions that do not.
-pub trait Constraint {
+/// The edge checker refuses states that violate it; projection makes samples and extensions that do not. Searches that race share it.
+pub trait Constraint: Sync {
     /// Whether `q` satisfies the constraint.
     fn holds(&self, q: &[f64]) -> bool;
 

@@ -5,6 +5,7 @@
 //! the business of [`rrt`](crate::rrt).
 
 mod race;
+mod sampling;
 mod search;
 mod shorten;
 mod tree;
@@ -16,7 +17,8 @@ use robotc_core::Seed;
 use crate::budget::{Budget, Interrupt};
 use crate::edge::{EdgeChecker, Obstruction, Patience};
 
-pub use race::{Race, race_motion};
+pub use race::{Race, race, race_motion};
+pub use sampling::{SAMPLINGS, Sampling};
 pub use search::SearchOptions;
 pub use shorten::ShortenOptions;
 

@@ -1,8 +1,8 @@
 //! Several searches for the same motion at once.
 //!
 //! Search times have a heavy tail: of several searches with different seeds, the first to arrive is rarely slow. Which of them
-//! counts is decided by iterations and then by number, never by the clock, so that the path is the same with any number of
-//! threads.
+//! counts is decided by how often they asked their budget, once an iteration, and then by number, never by the clock, so that the
+//! path is the same with any number of threads.
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
@@ -30,28 +30,43 @@ impl Default for Race {
     }
 }
 
-/// Finds a path from `start` to `goal` by several searches, each with a stream of `seed`: that of the first one, if it arrives within its
-/// head start, else the one that takes the fewest iterations, the first of equals. A search ends when another one has
-/// arrived in fewer.
+/// Finds a path from `start` to `goal` by several [racing](race()) searches, each with a stream of `seed`.
 ///
-/// Each of the `others` has a thread of its own beside the caller's; all checkers are of the same robot and world. `interrupt`
-/// is asked by all searches in every iteration.
+/// Each of the `others` has a thread of its own beside the caller's; all checkers are of the same robot and world.
 pub fn race_motion<C: EdgeChecker + Send>(
     checker: &mut C,
     others: &mut [C],
-    race: Race,
+    racing: Race,
     start: &[f64],
     goal: &[f64],
     options: &SearchOptions,
     interrupt: &(dyn Fn() -> Option<Interrupt> + Sync),
     seed: Seed,
 ) -> Result<MotionPlan, MotionFailure> {
+    let search = |checker: &mut C, racer: u32, budget: &Budget<'_>| {
+        find_motion(checker, start, goal, options, budget, seed.at(u64::from(racer)))
+    };
+    race(checker, others, racing, &search, interrupt)
+}
+
+/// The result of the first search, if it arrives within its head start, else of the one that takes the fewest iterations, the first of
+/// equals. A search ends when another one has arrived in fewer; when none arrives, the failure is that of the first one.
+///
+/// `search` is given what its thread works with, the number of the search, and a budget that it asks in every iteration. Each of the
+/// `others` has a thread of its own beside the caller's. `interrupt` is asked by all searches in every iteration.
+pub fn race<W: Send, T: Send, E: Send>(
+    worker: &mut W,
+    others: &mut [W],
+    racing: Race,
+    search: &(dyn Fn(&mut W, u32, &Budget<'_>) -> Result<T, E> + Sync),
+    interrupt: &(dyn Fn() -> Option<Interrupt> + Sync),
+) -> Result<T, E> {
     let next = AtomicUsize::new(1);
     let fewest = AtomicU32::new(u32::MAX);
     let arrived = Mutex::new(None);
     let failed = Mutex::new(None);
-    let search = |checker: &mut C, racer: usize, started: &dyn Fn(u32)| {
-        let own = if racer == 0 { race.head_start } else { 0 };
+    let run = |worker: &mut W, racer: usize, started: &dyn Fn(u32)| {
+        let own = if racer == 0 { racing.head_start } else { 0 };
         let iterations = Cell::new(0);
         let overtaken = || iterations.get() > fewest.load(Ordering::Relaxed).max(own);
         let stop = || {
@@ -59,11 +74,10 @@ pub fn race_motion<C: EdgeChecker + Send>(
             started(iterations.get());
             if overtaken() { Some(Interrupt::Cancelled) } else { interrupt() }
         };
-        let outcome = find_motion(checker, start, goal, options, &Budget::new(&stop), seed.at(racer as u64));
-        match outcome {
+        match search(worker, racer as u32, &Budget::new(&stop)) {
             Ok(found) => {
                 // Nobody arrives in less than nothing.
-                let counted = if found.iterations <= own { 0 } else { found.iterations };
+                let counted = if iterations.get() <= own { 0 } else { iterations.get() };
                 fewest.fetch_min(counted, Ordering::Relaxed);
                 keep_first(&arrived, (counted, racer), found);
             }
@@ -71,26 +85,26 @@ pub fn race_motion<C: EdgeChecker + Send>(
             Err(failure) => keep_first(&failed, (0, racer), failure),
         }
     };
-    let rest = |checker: &mut C| {
+    let rest = |worker: &mut W| {
         loop {
             let racer = next.fetch_add(1, Ordering::Relaxed);
-            if racer >= race.racers as usize || fewest.load(Ordering::Relaxed) == 0 {
+            if racer >= racing.racers as usize || fewest.load(Ordering::Relaxed) == 0 {
                 return;
             }
-            search(checker, racer, &|_| {});
+            run(worker, racer, &|_| {});
         }
     };
     std::thread::scope(|scope| {
         let waiting = Cell::new(Some(others));
         let head_start_is_over = |iterations: u32| {
-            if iterations > race.head_start && race.racers > 1 {
-                for checker in waiting.take().into_iter().flatten() {
-                    scope.spawn(|| rest(checker));
+            if iterations > racing.head_start && racing.racers > 1 {
+                for worker in waiting.take().into_iter().flatten() {
+                    scope.spawn(|| rest(worker));
                 }
             }
         };
-        search(checker, 0, &head_start_is_over);
-        rest(checker);
+        run(worker, 0, &head_start_is_over);
+        rest(worker);
     });
     match (first_of(arrived), first_of(failed)) {
         (Some(found), _) => Ok(found),
@@ -132,8 +146,8 @@ mod tests {
     fn race(threads: usize, racers: u32, goal: [f64; 2], seed: u64) -> Result<MotionPlan, MotionFailure> {
         let options = SearchOptions { max_iterations: 3000, ..SearchOptions::default() };
         let (first, others) = (&mut toys(1)[0], &mut toys(threads - 1));
-        let race = Race { racers, head_start: HEAD_START };
-        race_motion(first, others, race, &[1.0, 1.0], &goal, &options, &|| None, Seed::new(seed))
+        let racing = Race { racers, head_start: HEAD_START };
+        race_motion(first, others, racing, &[1.0, 1.0], &goal, &options, &|| None, Seed::new(seed))
     }
 
     #[test]

@@ -7,6 +7,7 @@
 use robotc_core::Seed;
 use robotc_core::rng::Rng;
 
+use super::sampling::{Growth, Sampler, Sampling};
 use super::tree::Tree;
 use super::{MotionFailure, MotionPlan};
 use crate::budget::Budget;
@@ -18,8 +19,8 @@ use crate::space::Space;
 pub struct SearchOptions {
     /// Longest edge of the trees, as a fraction of the diameter of the space.
     pub step: f64,
-    /// Share of samples drawn near a random node rather than anywhere.
-    pub local: f64,
+    /// How the states are drawn that trees grow towards.
+    pub sampling: &'static Sampling,
     /// Iterations of the shortest run; others are 1, 1, 2, 1, 1, 2, 4, ... times as long.
     pub restart: u32,
     /// A node from which a step was blocked is extended only towards samples within this many steps (Yershova, Jaillet,
@@ -28,13 +29,20 @@ pub struct SearchOptions {
     /// Ways that look free are proven only when they are complete, until so many of a run were not free after all; then
     /// each motion is proven as it is added.
     pub hopes: u32,
-    /// Iterations, over all runs, after which the search gives up.
+    /// Iterations, over all runs, after which the search gives up. Those whose sample is outside of the domain cost next to nothing.
     pub max_iterations: u32,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { step: 0.1, local: 0.1, restart: 40_000, domain: 4.0, hopes: 100, max_iterations: 1_000_000 }
+        Self {
+            step: 0.1,
+            sampling: <&Sampling>::default(),
+            restart: 40_000,
+            domain: 3.0,
+            hopes: 100,
+            max_iterations: 4_000_000,
+        }
     }
 }
 
@@ -60,8 +68,10 @@ pub(super) fn run<C: EdgeChecker + ?Sized>(
     if checker.edge(start, goal).is_ok() {
         return Ok(MotionPlan { path: vec![start.to_vec(), goal.to_vec()], iterations: 0 });
     }
+    let space = checker.space().clone();
     let mut search = Search {
-        step: options.step * checker.space().diameter(),
+        step: options.step * space.diameter(),
+        space,
         from_start: Tree::new(checker.space()),
         from_goal: Tree::new(checker.space()),
         sample: start.to_vec(),
@@ -74,7 +84,9 @@ pub(super) fn run<C: EdgeChecker + ?Sized>(
         search.from_start.plant(checker.space(), start);
         search.from_goal.plant(checker.space(), goal);
         search.disappointments = 0;
-        let mut rng = seed.at(run).rng();
+        let seed = seed.at(run);
+        let mut sampler = options.sampling.sampler(&search.space, seed.split("sampler"));
+        let mut rng = seed.rng();
         let length = options.restart.saturating_mul(luby(run + 1)).max(1);
         for _ in 0..length {
             budget.check().map_err(|interrupt| MotionFailure::Interrupted(interrupt, iterations))?;
@@ -82,7 +94,7 @@ pub(super) fn run<C: EdgeChecker + ?Sized>(
                 return Err(MotionFailure::Iterations(iterations));
             }
             iterations += 1;
-            if let Some(path) = search.iterate(checker, &mut rng) {
+            if let Some(path) = search.iterate(checker, &mut *sampler, &mut rng) {
                 return Ok(MotionPlan { path, iterations });
             }
         }
@@ -104,6 +116,7 @@ fn luby(n: u64) -> u32 {
 
 struct Search<'a> {
     options: &'a SearchOptions,
+    space: Space,
     step: f64,
     from_start: Tree,
     from_goal: Tree,
@@ -115,13 +128,19 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// Grows the smaller tree by a step and tries to connect; a path when the trees meet.
-    fn iterate<C: EdgeChecker + ?Sized>(&mut self, checker: &mut C, rng: &mut Rng) -> Option<Vec<Vec<f64>>> {
+    fn iterate<C: EdgeChecker + ?Sized>(
+        &mut self,
+        checker: &mut C,
+        sampler: &mut dyn Sampler,
+        rng: &mut Rng,
+    ) -> Option<Vec<Vec<f64>>> {
         let hopeful = self.disappointments < self.options.hopes;
         checker.set_patience(if hopeful { Patience::Hopeful } else { Patience::Thorough });
-        let Self { options, step, from_start, from_goal, sample, next, disappointments } = self;
+        let Self { options, space, step, from_start, from_goal, sample, next, disappointments } = self;
         let forward = from_start.len() <= from_goal.len();
         let (grown, other) = if forward { (from_start, from_goal) } else { (from_goal, from_start) };
-        draw(checker.space(), grown, options.local, *step, sample, rng);
+        let mut free = |q: &[f64]| checker.edge(q, q).is_ok();
+        sampler.draw(&mut Growth { space, tree: grown, step: *step, free: &mut free }, rng, sample);
         let (near, distance) = grown.nearest(checker.space(), sample);
         if distance > *grown.domain(near) {
             return None;
@@ -169,26 +188,6 @@ fn prove<C: EdgeChecker + ?Sized>(checker: &mut C, tree: &mut Tree, node: usize)
         tree.prove(unproven);
     }
     true
-}
-
-fn draw(space: &Space, tree: &Tree, local: f64, step: f64, sample: &mut [f64], rng: &mut Rng) {
-    let near = rng.unit() < local;
-    if near {
-        let centre = tree.state(rng.below(tree.len()));
-        let distance = step * rng.unit();
-        let mut norm = 0.0;
-        for x in sample.iter_mut() {
-            *x = rng.normal();
-            norm += *x * *x;
-        }
-        let scale = distance / norm.sqrt().max(f64::MIN_POSITIVE);
-        for ((x, c), axis) in sample.iter_mut().zip(centre).zip(space.axes()) {
-            *x = c + scale * *x / axis.weight;
-        }
-        space.clamp(sample);
-    } else {
-        space.sample_into(sample, rng);
-    }
 }
 
 /// A step from a node towards a state that is `distance` away.

@@ -18,6 +18,9 @@ use crate::space::{Axis, Space};
 /// The version of the document that this library writes and reads.
 pub const VERSION: u32 = 1;
 
+/// Most searches that race for a problem.
+pub const MOST_RACERS: u32 = 64;
+
 /// A problem of free motion, as JSON. Unknown keys are errors; keys with a default may be left out.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -60,6 +63,10 @@ pub struct PlanningProblem {
     /// Names the random streams: the same seed gives the same path.
     #[serde(default)]
     pub seed: u64,
+    /// Searches that [race](crate::motion::race()), each with a stream of its own: 1 is no race. The path depends on how many race, not on how
+    /// many threads they have.
+    #[serde(default = "default_race")]
+    pub race: u32,
     /// If given, a start that is not free is moved out of the contact first.
     #[serde(default)]
     pub jitter: Option<JitterOptions>,
@@ -69,7 +76,7 @@ pub struct PlanningProblem {
     /// What is done to the path, in order.
     #[serde(default = "default_post")]
     pub post: Vec<Smoother>,
-    /// Parameters of a planner that is not of this library.
+    /// Parameters of one planner alone, such as one that is not of this library.
     #[serde(default)]
     pub options: serde_json::Map<String, serde_json::Value>,
 }
@@ -84,6 +91,10 @@ fn default_resolution() -> f64 {
 
 fn default_margin() -> f64 {
     0.005
+}
+
+fn default_race() -> u32 {
+    1
 }
 
 fn default_true() -> bool {
@@ -248,6 +259,7 @@ impl PlanningProblem {
             self_collisions: true,
             time_limit: None,
             seed: 0,
+            race: default_race(),
             jitter: None,
             search: RrtOptions::default(),
             post: default_post(),
@@ -304,6 +316,7 @@ impl PlanningProblem {
         value("margin".into(), self.margin, "at least 0", self.margin >= 0.0 && self.margin.is_finite())?;
         let local = self.search.local;
         value("search.local".into(), local, "from 0 to 1", (0.0..=1.0).contains(&local))?;
+        value("race".into(), f64::from(self.race), "from 1 to 64", (1..=MOST_RACERS).contains(&self.race))?;
         if let Some(limit) = self.time_limit {
             value("time_limit".into(), limit, "at least 0", limit >= 0.0)?;
         }
@@ -327,6 +340,14 @@ impl PlanningProblem {
     /// The root of the random streams.
     pub fn random_seed(&self) -> Seed {
         Seed::new(self.seed)
+    }
+
+    /// The root of the random streams of one of the searches that race; 0 is the first.
+    pub fn racer_seed(&self, racer: u32) -> Seed {
+        match racer {
+            0 => self.random_seed(),
+            _ => self.random_seed().split("racer").at(u64::from(racer)),
+        }
     }
 
     /// What a budget asks: whether the time limit is over, `elapsed` seconds after the start.

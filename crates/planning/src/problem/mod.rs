@@ -13,10 +13,11 @@ mod solve;
 mod tests;
 
 pub use document::{
-    AxisDocument, ConstraintDocument, MechanismDocument, PlanningProblem, PoseDocument, ProblemError, VERSION,
+    AxisDocument, ConstraintDocument, MOST_RACERS, MechanismDocument, PlanningProblem, PoseDocument,
+    ProblemError, VERSION,
 };
 pub use registry::{
     PathFailure, PathFailureReason, PathPlanner, PathSolution, Query, Registry, RegistryError,
 };
 pub use situation::{HeldDocument, SituationDocument};
-pub use solve::{SolveFailure, Solved, solve};
+pub use solve::{SolveFailure, Solved, solve, solve_racer};

@@ -9,6 +9,7 @@ use crate::budget::Budget;
 use crate::edge::{Blocked, EdgeChecker, Obstruction};
 use crate::explore::{ExploreFailureReason, ExploreOptions, explore};
 use crate::goal::{GoalDraw, GoalSampler};
+use crate::motion::{MotionFailure, Sampling, SearchOptions, find_motion};
 use crate::rrt::{RrtConnect, RrtFailureReason};
 
 /// [`RrtConnect`].
@@ -49,6 +50,71 @@ impl PathPlanner for Connect {
                 blocked: failure.statistics.blocked,
             }),
         }
+    }
+}
+
+/// [`find_motion`].
+pub(super) struct Lazy;
+
+/// The key of its option: the name of a [`Sampling`].
+const SAMPLING: &str = "sampling";
+
+impl PathPlanner for Lazy {
+    fn name(&self) -> &str {
+        "rrt_lazy"
+    }
+
+    fn summary(&self) -> &str {
+        "Two trees of motions that are only looked at; whole ways are proven. One goal after the other, no constraint."
+    }
+
+    fn plan(
+        &self,
+        checker: &mut dyn EdgeChecker,
+        query: Query<'_>,
+        budget: &Budget<'_>,
+        seed: Seed,
+    ) -> Result<PathSolution, PathFailure> {
+        let unsupported = |what: String| early(PathFailureReason::Unsupported(what));
+        if query.constraint.is_some() {
+            return Err(unsupported("it knows no constraints".into()));
+        }
+        let sampling = match query.problem.options.get(SAMPLING) {
+            None => <&Sampling>::default(),
+            Some(name) => name
+                .as_str()
+                .and_then(Sampling::named)
+                .ok_or_else(|| unsupported(format!("there is no {SAMPLING} {name}")))?,
+        };
+        let search = &query.problem.search;
+        let goals = all_goals(query.goals, search.max_goal_draws, budget).map_err(early)?;
+        let max_iterations = (search.max_iterations / goals.len() as u32).max(1);
+        let options =
+            SearchOptions { step: search.step, sampling, max_iterations, ..SearchOptions::default() };
+        let (mut iterations, mut blocked) = (0, BTreeMap::new());
+        for (goal, to) in goals.iter().enumerate() {
+            let reason = match find_motion(checker, query.start, to, &options, budget, seed.at(goal as u64)) {
+                Ok(found) => {
+                    iterations += found.iterations;
+                    return Ok(PathSolution { path: found.path, goal, iterations });
+                }
+                Err(MotionFailure::Start(by)) => PathFailureReason::Start(by),
+                Err(MotionFailure::Interrupted(interrupt, n)) => {
+                    iterations += n;
+                    PathFailureReason::Interrupted(interrupt)
+                }
+                Err(MotionFailure::Goal(by)) => {
+                    *blocked.entry(by).or_insert(0) += 1;
+                    continue;
+                }
+                Err(MotionFailure::Iterations(n)) => {
+                    iterations += n;
+                    continue;
+                }
+            };
+            return Err(PathFailure { reason, iterations, blocked });
+        }
+        Err(PathFailure { reason: PathFailureReason::Exhausted, iterations, blocked })
     }
 }
 

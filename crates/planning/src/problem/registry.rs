@@ -126,6 +126,7 @@ impl Registry {
         Self {
             planners: vec![
                 Box::new(planners::Connect),
+                Box::new(planners::Lazy),
                 Box::new(planners::SingleTree),
                 Box::new(planners::Straight),
             ],

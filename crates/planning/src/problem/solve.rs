@@ -82,12 +82,26 @@ pub fn solve(
     constraint: Option<&dyn Constraint>,
     budget: &Budget<'_>,
 ) -> Result<Solved, SolveFailure> {
+    solve_racer(registry, problem, checker, goals, constraint, budget, 0)
+}
+
+/// [`solve`] as one of the searches that [race](crate::motion::race()): each has a stream of its own, the first one, number 0, that of a search which
+/// has no rival.
+pub fn solve_racer(
+    registry: &Registry,
+    problem: &PlanningProblem,
+    checker: &mut dyn EdgeChecker,
+    goals: Option<&mut dyn GoalSampler>,
+    constraint: Option<&dyn Constraint>,
+    budget: &Budget<'_>,
+    racer: u32,
+) -> Result<Solved, SolveFailure> {
     problem.check().map_err(SolveFailure::Problem)?;
     let planner = registry.get(&problem.planner).map_err(SolveFailure::Planner)?;
     if *checker.space() != problem.space() {
         return Err(SolveFailure::Space);
     }
-    let seed = problem.random_seed();
+    let seed = problem.racer_seed(racer);
 
     let mut start = problem.start.clone();
     let mut jittered = 0.0;

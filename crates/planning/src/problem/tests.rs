@@ -8,6 +8,7 @@ use crate::budget::{Budget, Interrupt};
 use crate::edge::{EdgeChecker, Obstruction, walk_path};
 use crate::goal::{FixedGoals, GoalDraw, GoalSampler};
 use crate::jitter::JitterOptions;
+use crate::motion::{Race, race};
 use crate::testbed::{self, REST};
 use crate::toy::Toy;
 use robotc_core::{Pose, Seed};
@@ -63,6 +64,7 @@ fn wrong_documents_are_refused_with_the_place() {
         ("\"weight\": 1.0", "\"weight\": -1.0", "axes[0].weight is -1, expected more than 0"),
         ("\"local\": 0.3", "\"local\": 1.5", "search.local is 1.5, expected from 0 to 1"),
         ("\"resolution\": 0.01", "\"resolution\": -0.01", "resolution is -0.01, expected more than 0"),
+        ("\"race\": 1", "\"race\": 0", "race is 0, expected from 1 to 64"),
         ("\"time_limit\": null", "\"time_limit\": -1", "time_limit is -1, expected at least 0"),
     ] {
         let found = with(from, to);
@@ -103,6 +105,27 @@ fn all_planners_of_the_registry_solve_the_plane() {
 }
 
 #[test]
+fn racing_searches_give_the_same_path_with_any_number_of_threads() {
+    let registry = Registry::standard();
+    let search = |toy: &mut Toy, racer: u32, budget: &Budget<'_>| {
+        solve_racer(&registry, &problem(), toy, None, None, budget, racer)
+    };
+    let raced = |racers: u32, head_start: u32, threads: usize| {
+        let mut toys: Vec<Toy> = (0..threads).map(|_| toy()).collect();
+        let (first, others) = toys.split_first_mut().unwrap();
+        race(first, others, Race { racers, head_start }, &search, &|| None).unwrap()
+    };
+    let alone = solve(&registry, &problem(), &mut toy(), None, None, &Budget::unlimited()).unwrap();
+    assert_eq!(raced(1, 0, 1), alone);
+    assert_eq!(raced(8, 100_000, 2), alone, "it arrives within its head start");
+    let first = raced(8, 0, 1);
+    assert!(first.iterations < alone.iterations, "one of eight is quicker");
+    for threads in 2..5 {
+        assert_eq!(raced(8, 0, threads), first);
+    }
+}
+
+#[test]
 fn starts_are_jittered_and_goals_sampled_when_asked() {
     let registry = Registry::standard();
     let mut problem = problem();
@@ -128,7 +151,7 @@ fn failures_name_their_reason() {
     };
     assert_eq!(
         fails(&|p| p.planner = "prm".into()),
-        "there is no planner prm; there are rrt_connect, rrt, straight"
+        "there is no planner prm; there are rrt_connect, rrt_lazy, rrt, straight"
     );
     assert_eq!(fails(&|p| p.axes[0].weight = 2.0), "the limits of the problem are not those of the checker");
     assert_eq!(fails(&|p| p.goals[0][0] = 4.5), "no goal configuration was found (1 goals are not free)");

@@ -222,13 +222,14 @@ class Session:
         seed: int | None = None,
         time_limit: float | None = None,
         progress: Callable[[float], object] | None = None,
+        race: int | None = None,
     ) -> Motion:
         """A free motion of the arm to one of many goals.
 
         `goals` are joint values, shape (goals, joints), `poses` are `world_from_tool`. `held` is an object with its pose in
         the tool frame, `bodies` where others are, `joints` what those joints are at that are not planned for. `problem` is a document of
         docs/guides/planners.md, with constraints, margin and limits. `progress` is told the seconds so far; the search ends when it
-        returns False or raises.
+        returns False or raises. `race` searches with as many seeds at once, on all processors; the path does not depend on how many there are.
         """
     def validate(
         self,
