@@ -87,6 +87,17 @@ pub struct Gripper {
     pub preshapes: Vec<Preshape>,
 }
 
+impl Gripper {
+    /// The fingers that nothing moves, where a single joint closes the others on them: the hand then moves aside until they touch.
+    pub fn fixed_jaw(&self, model: &RobotModel) -> Vec<LinkIdx> {
+        if self.closing.iter().filter(|sign| **sign != 0.0).count() != 1 {
+            return Vec::new();
+        }
+        let moved = |link: LinkIdx| model.dofs_moving(link).iter().any(|dof| self.dofs.contains(dof));
+        self.fingers.iter().copied().filter(|&link| !moved(link)).collect()
+    }
+}
+
 /// A position of the fingers before a grasp.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preshape {

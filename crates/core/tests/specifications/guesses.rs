@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use robotc_core::LinkIdx;
 use robotc_core::diag::Sources;
 use robotc_core::robot::{Base, Robot};
 use robotc_core::spec::{InitOptions, ParameterTable, init, load_robot};
@@ -134,6 +135,21 @@ fn the_tool_frame_lies_between_the_finger_tips() {
         assert!(tool.xy().norm() < 1e-3 && (tool.z - height).abs() < 0.01, "{file}: {tool}");
         assert!((robot.grippers[0].approach_in_tool.z - 1.0).abs() < 1e-12);
     }
+}
+
+#[test]
+fn a_single_jaw_closes_on_its_palm() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/specifications");
+    let (text, robot) = guess(&folder, "one_jaw.urdf", None, false).unwrap();
+    let gripper = &robot.grippers[0];
+    let names = |links: &[LinkIdx]| -> Vec<String> {
+        links.iter().map(|&link| robot.model.links()[link].name.clone()).collect()
+    };
+    assert_eq!(names(&gripper.fingers), ["gripper_jaw", "link4"], "{text}");
+    assert_eq!(names(&gripper.fixed_jaw(&robot.model)), ["link4"]);
+    assert_eq!(gripper.closing, [-1.0], "{text}");
+    // Half-way between the jaw when it is open and the palm.
+    assert!((gripper.palm_from_tool.translation.y - 0.035).abs() < 1e-3, "{text}");
 }
 
 #[test]

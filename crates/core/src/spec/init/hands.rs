@@ -27,7 +27,7 @@ pub(super) struct Hand {
     pub(super) dofs: Vec<DofIdx>,
     /// 1, -1 or 0 for each of `dofs`.
     pub(super) closing: Vec<f64>,
-    /// Links with shapes that the joints move.
+    /// Links with shapes that the joints move; with a single one of them its palm, which is then the other jaw.
     pub(super) fingers: Vec<LinkIdx>,
     /// Origin of the tool frame in the palm frame; metres.
     pub(super) tool: [f64; 3],
@@ -109,10 +109,14 @@ fn describe(bodies: &Bodies, body: usize, kinematics: &Kinematics) -> Option<Han
     let tips = tips(&shapes, bodies, &below, &middle, &approach);
     let closing = closing(&shapes, bodies, &dofs, &tips, &middle, &approach);
     let tool = between_tips(&shapes, bodies, &dofs, &closing, &tips, &approach);
+    let mut fingers = finger_links(bodies, &below);
+    if tips.len() == 1 && closing.iter().filter(|sign| **sign != 0.0).count() == 1 {
+        fingers.push(palm);
+    }
     Some(Hand {
         body,
         palm,
-        fingers: finger_links(bodies, &below),
+        fingers,
         dofs,
         closing,
         tool: tool.map(|x| (x * 1e4).round() / 1e4 + 0.0).into(),
@@ -281,7 +285,12 @@ fn between_tips(
         };
         tips.iter().map(off).sum()
     };
-    let closest = configurations.min_by(|a, b| spread(a).total_cmp(&spread(b))).expect("eleven of them");
+    let closest = if tips.len() > 1 {
+        configurations.min_by(|a, b| spread(a).total_cmp(&spread(b))).expect("eleven of them")
+    } else {
+        // Half-way to where it meets the palm: what is to be held comes in between.
+        at_share(bodies.model, dofs, closing, 0.5)
+    };
     let heights: Vec<(f64, f64)> =
         tips.iter().map(|&t| shapes.height(bodies, t, &closest, approach)).collect();
     let end = heights.iter().map(|(_, high)| *high).fold(f64::NEG_INFINITY, f64::max);

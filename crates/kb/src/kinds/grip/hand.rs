@@ -115,7 +115,8 @@ impl<'a> Hand<'a> {
         for finger in 0..gripper.dofs.len() {
             let moved = (0..hand.links.len()).filter(|&i| hand.links[i].moved_by.contains(&finger));
             hand.travels.push(moved.map(|link| hand.travel(link, finger)).collect());
-            hand.jaws.push(Jaws::of(&hand.directions(finger)));
+            let directions = hand.directions(finger);
+            hand.jaws.push(Jaws::of(&directions).or_else(|| hand.against_fixed(&directions)));
         }
         hand
     }
@@ -271,6 +272,18 @@ impl<'a> Hand<'a> {
                 Some((i, moved.try_normalize(1e-12)?))
             })
             .collect()
+    }
+}
+
+impl Hand<'_> {
+    /// A jaw that closes against fingers that nothing moves, as the only drive of its hand.
+    fn against_fixed(&self, directions: &[(usize, Vector3<f64>)]) -> Option<Jaws> {
+        let fixed = self.gripper.fixed_jaw(self.kinematics.model());
+        let fixed: Vec<usize> =
+            (0..self.links.len()).filter(|&i| fixed.contains(&self.links[i].link)).collect();
+        let closing: Vector3<f64> = directions.iter().map(|(_, closing)| *closing).sum();
+        let axis = -closing.try_normalize(1e-6).filter(|_| !fixed.is_empty())?;
+        Some(Jaws { axis, sides: [directions.iter().map(|(link, _)| *link).collect(), fixed] })
     }
 }
 

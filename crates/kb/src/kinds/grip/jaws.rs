@@ -19,6 +19,20 @@ pub(crate) fn jaws_with_knuckles() -> (Kinematics, Gripper, Vec<(LinkIdx, Convex
     jaws_with(true)
 }
 
+/// The left jaw of [`jaws`] alone, and a right one that is part of the palm, where that one is when it is closed.
+pub(crate) fn fixed_jaw() -> (Kinematics, Gripper, Vec<(LinkIdx, ConvexParts)>) {
+    let mut b = RobotBuilder::new("jaws");
+    for link in ["palm", "left", "right"] {
+        b.link(link, vec![], vec![], None);
+    }
+    let limits = (0.0, 0.04, false, DynamicLimits::DEFAULT);
+    let slide = JointMotion::Prismatic;
+    b.moving("left", slide, "palm", "left", Origin::default(), [0.0, 1.0, 0.0], limits, None);
+    b.fixed("right", "palm", "right", Origin::default());
+    let (_, gripper, parts) = jaws();
+    (Kinematics::new(Arc::new(b.build().unwrap())), gripper, parts)
+}
+
 fn jaws_with(knuckles: bool) -> (Kinematics, Gripper, Vec<(LinkIdx, ConvexParts)>) {
     let mut b = RobotBuilder::new("jaws");
     b.link("palm", vec![], vec![], None).link("left", vec![], vec![], None).link(

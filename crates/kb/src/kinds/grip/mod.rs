@@ -59,9 +59,14 @@ impl GripperInputs {
         let fingers: Vec<usize> = gripper.fingers.iter().map(|l| l.index()).collect();
         let dofs: Vec<usize> = gripper.dofs.iter().map(|d| d.index()).collect();
         parts.add("fingers", "", &(fingers, dofs, gripper.closing.clone()));
-        // Only what attracts says so: keys of hands that close are as they were before there were others.
+        // Only what attracts, or has a fixed jaw, says so: keys of other hands are as they were before there were any.
         if gripper.hold == Hold::Attract {
             parts.add("hold", "", &1u32);
+        }
+        let fixed: Vec<usize> =
+            gripper.fixed_jaw(self.mechanism.model()).iter().map(|link| link.index()).collect();
+        if !fixed.is_empty() {
+            parts.add("fixed jaw", "", &fixed);
         }
         for preshape in &gripper.preshapes {
             parts.add("preshape", &preshape.name, &preshape.values);

@@ -2,7 +2,8 @@
 //! approach and touch.
 //!
 //! Thesis section 4.2 (and 3.2 for its use in planning). Everything is kinematic: the object does not move, but a hand
-//! whose fingers share one drive is centred on the object, as parallel jaws do when the first jaw touches.
+//! whose fingers share one drive is centred on the object, as parallel jaws do when the first jaw touches; one whose only drive closes
+//! on a fixed jaw is brought up to that.
 
 use nalgebra::{Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use robotc_core::Pose;
@@ -213,7 +214,7 @@ fn link_gap(hand: &Hand, link: usize, object_from_link: &Pose, object: &ConvexPa
 
 #[cfg(test)]
 mod tests {
-    use super::super::jaws::{jaws, jaws_with_knuckles};
+    use super::super::jaws::{fixed_jaw, jaws, jaws_with_knuckles};
     use super::*;
     use robotc_core::geom::box_part;
 
@@ -229,6 +230,25 @@ mod tests {
                 assert!(closed.object_from_tool.translation.y.abs() < TOUCH, "{}", closed.object_from_tool);
                 assert!((closed.closed[0] - 0.015).abs() < 2.0 * TOUCH, "{:?}", closed.closed);
             }
+        }
+    }
+
+    #[test]
+    fn a_hand_with_a_fixed_jaw_is_brought_up_to_it() {
+        let object = ConvexParts::new(vec![box_part(Vector3::new(0.1, 0.03, 0.1))]);
+        let (kinematics, gripper, parts) = fixed_jaw();
+        let hand =
+            Hand::new(&kinematics, &gripper, |l| parts.iter().find(|(link, _)| *link == l).map(|(_, p)| p));
+        for aside in [-0.017, -0.02, -0.024] {
+            let closed =
+                close_fingers(&hand, &object, Pose::translation(0.0, aside, -0.03), &[0.04]).unwrap();
+            // The inner side of the fixed jaw is at the middle of the palm.
+            assert!(
+                (closed.object_from_tool.translation.y + 0.015).abs() < 4.0 * TOUCH,
+                "{}",
+                closed.object_from_tool
+            );
+            assert!((closed.closed[0] - 0.03).abs() < 4.0 * TOUCH, "{:?}", closed.closed);
         }
     }
 }
