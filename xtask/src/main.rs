@@ -8,6 +8,7 @@ mod fuzz;
 mod ik_bench;
 mod ik_zoo;
 mod kill;
+mod other_target;
 mod python;
 mod seeds;
 mod test;
@@ -26,6 +27,11 @@ const TASKS: &[Task] = &[
     ("ik-bench", "time generated solvers beside published ones: [POSES]", ik_bench::run),
     ("ik-zoo", "inverse kinematics of every arm of a folder: [FOLDER] [POSES]", ik_zoo::run),
     ("kill", "kill compilations at random moments: [TRIALS] [PROGRAM]", kill::run),
+    (
+        "other-target",
+        "compile on this machine and on 64-bit ARM, and compare: [NATIVE FOREIGN]",
+        other_target::run,
+    ),
     ("python", "build the Python wheel and run its tests, [ARGUMENTS OF PYTEST]", python::run),
     ("seeds", "planning times and successes over many seeds", seeds::run),
     ("test", "all tests: format, lints, Rust, Python", test::run),
@@ -48,6 +54,6 @@ fn dispatch(args: &[String]) -> anyhow::Result<()> {
     if let Some((_, _, task)) = TASKS.iter().find(|(task, _, _)| *task == name) {
         return task(&args[1..]);
     }
-    let list: Vec<String> = TASKS.iter().map(|(name, what, _)| format!("  {name:10} {what}")).collect();
+    let list: Vec<String> = TASKS.iter().map(|(name, what, _)| format!("  {name:12} {what}")).collect();
     anyhow::bail!("no task `{name}`; tasks are:\n{}", list.join("\n"))
 }

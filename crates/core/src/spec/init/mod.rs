@@ -43,7 +43,7 @@ pub struct InitOptions {
 
 impl InitOptions {
     /// `path` as the specification has to name it. Absolute paths stay as they are.
-    fn from_specification(&self, path: &Path) -> PathBuf {
+    fn seen_from_folder(&self, path: &Path) -> PathBuf {
         let around = |path: &Path| normal(&self.here.join(path));
         relative(&self.folder, path)
             .or_else(
@@ -240,7 +240,7 @@ mod tests {
         let check = |folder: &str, path: &str, expected: &str| {
             let options =
                 InitOptions { folder: folder.into(), here: "/home/me".into(), ..InitOptions::default() };
-            assert_eq!(options.from_specification(Path::new(path)), Path::new(expected));
+            assert_eq!(options.seen_from_folder(Path::new(path)), Path::new(expected));
         };
         check("", "robots/a.urdf", "robots/a.urdf");
         check("specs", "specs/a/b.urdf", "a/b.urdf");

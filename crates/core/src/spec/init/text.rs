@@ -27,7 +27,7 @@ pub(super) fn write(guess: &Guess, options: &InitOptions) -> String {
     if !options.packages.is_empty() {
         text += "\n[packages]\n";
         for (name, folder) in &options.packages {
-            text += &format!("{} = {}\n", quoted(name), path_text(&options.from_specification(folder)));
+            text += &format!("{} = {}\n", quoted(name), path_text(&options.seen_from_folder(folder)));
         }
     }
     if !options.arguments.is_empty() {
@@ -47,7 +47,7 @@ pub(super) fn write(guess: &Guess, options: &InitOptions) -> String {
 }
 
 fn reference(key: &str, path: &Path, options: &InitOptions) -> String {
-    format!("{key} = {}\n", path_text(&options.from_specification(path)))
+    format!("{key} = {}\n", path_text(&options.seen_from_folder(path)))
 }
 
 fn base(base: &Base) -> String {
