@@ -33,7 +33,7 @@ impl Project {
         }
     }
 
-    /// Everything that a task needs, its robot included.
+    /// Everything that a task needs, its robot included: of several arms only the one that does it, with its gripper.
     pub fn of_task(spec: &TaskSpec) -> Self {
         let task = Some(Arc::new(spec.task.clone()));
         Self { task, given: spec.parameters.clone(), ..Self::of_robot(&spec.robot) }
@@ -140,7 +140,10 @@ impl Subject for OfRobot {
 
 impl Subject for OfArm {
     fn all(project: &Project) -> Vec<Self> {
-        (0..project.robot.arms.len()).map(Self).collect()
+        match project.task() {
+            Some(task) => vec![Self(task.arm)],
+            None => (0..project.robot.arms.len()).map(Self).collect(),
+        }
     }
 
     fn label(&self, project: &Project) -> String {
@@ -150,7 +153,10 @@ impl Subject for OfArm {
 
 impl Subject for OfGripper {
     fn all(project: &Project) -> Vec<Self> {
-        (0..project.robot.grippers.len()).map(Self).collect()
+        match project.task() {
+            Some(task) => project.robot.arms[task.arm].gripper.map(Self).into_iter().collect(),
+            None => (0..project.robot.grippers.len()).map(Self).collect(),
+        }
     }
 
     fn label(&self, project: &Project) -> String {

@@ -54,6 +54,20 @@ fn folders_comments_and_layout_change_no_key() {
 }
 
 #[test]
+fn a_task_needs_only_its_own_arm() {
+    let with_another = |text: &str| {
+        if text.contains("name = \"mug_to_shelf\"") {
+            return text.replace("seed = 1", "seed = 1\narm = \"arm\"");
+        }
+        let another = "\n[[arm]]\nname = \"another\"\nbase = \"panda_link1\"\ntip = \"panda_hand\"\n";
+        if text.contains("name = \"panda\"") { format!("{text}{another}") } else { text.to_owned() }
+    };
+    let titles =
+        |nodes: Vec<(String, RecipeId)>| nodes.into_iter().map(|(title, _)| title).collect::<Vec<_>>();
+    assert_eq!(titles(recipes("/here", with_another)), titles(recipes("/here", str::to_owned)));
+}
+
+#[test]
 fn numbers_are_hashed_by_value_and_not_by_spelling() {
     let respelled = |text: &str| {
         let is_the_task = text.contains("name = \"mug_to_shelf\"");

@@ -24,9 +24,10 @@ pub(crate) struct InverseKinematics {
 
 impl InverseKinematics {
     pub(crate) fn load(knowledge: &Knowledge, arm: Option<&str>) -> PyResult<Self> {
-        let robot = knowledge.graph().project().robot();
+        let project = knowledge.graph().project();
+        let robot = project.robot();
         let index = match arm {
-            None => 0,
+            None => project.task().map_or(0, |task| task.arm),
             Some(name) => robot
                 .arms
                 .iter()
