@@ -7,6 +7,7 @@ use pyo3::exceptions::{PyKeyError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use robotc_core::urdf::{self, LoadOptions, MeshPolicy};
 use robotc_core::{Kinematics, SerialChain, Sources};
+use robotc_ikgen::backend::COptions;
 use robotc_ikgen::generate::natural;
 use robotc_ikgen::{Compiled, GoalType, Options, RustOptions, compile};
 use robotc_kb::os::OsSystem;
@@ -104,17 +105,22 @@ impl GeneratedSolver {
         self.compiled.program.goal.name()
     }
 
-    /// Writes the solver to a file: Rust (`.rs`), C with its header beside it (`.c`), or the solution program (`.ik`).
-    fn write(&self, path: PathBuf) -> PyResult<()> {
+    /// Writes the solver to a file: Rust (`.rs`), C with its header beside it (`.c`), or the solution program (`.ik`). With `calibrated`
+    /// the source finds all branches of measured arms too.
+    #[pyo3(signature = (path, *, calibrated=false))]
+    fn write(&self, path: PathBuf, calibrated: bool) -> PyResult<()> {
         let write = |path: &PathBuf, text: &str| {
             std::fs::write(path, text).map_err(|e| PyOSError::new_err(format!("{}: {e}", path.display())))
         };
         match path.extension().and_then(|ending| ending.to_str()) {
-            Some("rs") => write(&path, &self.compiled.rust_source(&RustOptions::default())),
+            Some("rs") => write(
+                &path,
+                &self.compiled.rust_source(&RustOptions { calibrated, ..RustOptions::default() }),
+            ),
             Some("ik") => write(&path, &self.compiled.text()),
             Some("c") => {
                 let stem = path.file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
-                let source = self.compiled.c_source(&stem);
+                let source = self.compiled.c_source(&stem, &COptions { calibrated });
                 let source = source.map_err(|error| PyValueError::new_err(error.to_string()))?;
                 write(&path.with_extension("h"), &source.header)?;
                 write(&path, &source.source)

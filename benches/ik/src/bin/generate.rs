@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use robotc_ik_bench::ARMS;
+use robotc_ikgen::backend::COptions;
 use robotc_ikgen::{Options, RustOptions, compile};
 
 fn main() -> std::io::Result<()> {
@@ -23,7 +24,7 @@ fn main() -> std::io::Result<()> {
             }
         };
         println!("{name}: {}", compiled.class);
-        let c = compiled.c_source(name).map_err(std::io::Error::other)?;
+        let c = compiled.c_source(name, &COptions::default()).map_err(std::io::Error::other)?;
         std::fs::write(folder.join(format!("{name}.h")), c.header)?;
         std::fs::write(folder.join(format!("{name}.c")), c.source)?;
         let axes = arm.axes.iter().map(|(axis, point)| format!("[{axis:?}, {point:?}]"));
@@ -35,7 +36,7 @@ fn main() -> std::io::Result<()> {
         ));
         for (suffix, std) in [("std", true), ("core", false)] {
             let path = folder.join(format!("{name}_{suffix}.rs"));
-            std::fs::write(&path, compiled.rust_source(&RustOptions { std }))?;
+            std::fs::write(&path, compiled.rust_source(&RustOptions { std, ..RustOptions::default() }))?;
             let _ = writeln!(modules, "#[path = {:?}]\nmod {name}_{suffix};", path.display().to_string());
             let _ = writeln!(contenders, "    contender!({name:?}, {suffix:?}, {name}_{suffix}),");
         }

@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use robotc_core::ik::{IkSolutions, InverseKinematics as _, Preferences};
 use robotc_core::urdf::MeshPolicy;
 use robotc_core::{Pose, Seed, SerialChain, diag};
-use robotc_ikgen::backend::RustOptions;
+use robotc_ikgen::backend::{COptions, RustOptions};
 use robotc_ikgen::generate::natural;
 use robotc_ikgen::report::{ProofOptions, Report, prove};
 use robotc_ikgen::run::RedundancyOptions;
@@ -60,6 +60,9 @@ pub(crate) struct Ik {
     /// Let Rust use the square root of std: faster
     #[arg(long)]
     std: bool,
+    /// Let the source find every branch of a calibrated arm too, whose constants it is given at run time: some 40 KB more
+    #[arg(long, requires = "output")]
+    calibrated: bool,
     /// File for the proof
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
@@ -329,11 +332,15 @@ fn write_source(path: &Path, compiled: &Compiled, args: &Ik) -> Outcome {
         Ok(())
     };
     match language {
-        Language::Rust => write(path, &compiled.rust_source(&RustOptions { std: args.std })),
+        Language::Rust => {
+            write(path, &compiled.rust_source(&RustOptions { std: args.std, calibrated: args.calibrated }))
+        }
         Language::Program => write(path, &compiled.text()),
         Language::C => {
             let stem = path.file_stem().map(|stem| stem.to_string_lossy()).unwrap_or_default();
-            let source = compiled.c_source(&stem).map_err(|error| Failure::Input(error.to_string()))?;
+            let source = compiled
+                .c_source(&stem, &COptions { calibrated: args.calibrated })
+                .map_err(|error| Failure::Input(error.to_string()))?;
             write(&path.with_extension("h"), &source.header)?;
             write(path, &source.source)
         }

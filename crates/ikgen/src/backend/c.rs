@@ -2,17 +2,18 @@
 
 use std::fmt::Write as _;
 
-use super::capacity;
+use super::{capacity, measured};
 use crate::GoalType;
 use crate::ir::{Block, Expr, Program, RootKind, Stmt, Value};
 use crate::kernel::chain::Frame;
+use crate::kernel::six::Order;
 use crate::run::TrueChain;
 
 /// The numeric kernel by sections, `/* == name == */` before each: what most solvers take, and what eigenvalues are for.
 const KERNEL: [&str; 2] = [include_str!("kernel.c"), include_str!("kernel_general.c")];
 
 /// What each section calls, itself in the order of the file.
-const SECTIONS: [(&str, &[&str]); 35] = [
+const SECTIONS: [(&str, &[&str]); 36] = [
     ("sqrt", &[]),
     ("abs", &[]),
     ("finite", &[]),
@@ -48,7 +49,15 @@ const SECTIONS: [(&str, &[&str]); 35] = [
     ("chain", &["sqrt", "abs", "finite", "cos_sin"]),
     ("candidate", &["chain", "angle_of"]),
     ("family", &["chain"]),
+    ("as_given", &["six", "candidate"]),
 ];
+
+/// Choices of the C back end.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct COptions {
+    /// As [`RustOptions::calibrated`](super::RustOptions::calibrated).
+    pub calibrated: bool,
+}
 
 /// What the header says of continua of solutions, known of whole poses.
 const FAMILIES: &str = "\
@@ -115,7 +124,12 @@ pub enum CError {
 }
 
 /// Header and source of a program; `name` is the prefix of all that they export, and the stem of the files.
-pub fn c_source(program: &Program, chain: &TrueChain, name: &str) -> Result<CSource, CError> {
+pub fn c_source(
+    program: &Program,
+    chain: &TrueChain,
+    name: &str,
+    options: &COptions,
+) -> Result<CSource, CError> {
     let starts = name.starts_with(|c: char| c.is_ascii_alphabetic());
     if !starts || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
         return Err(CError::Name(name.into()));
@@ -123,7 +137,7 @@ pub fn c_source(program: &Program, chain: &TrueChain, name: &str) -> Result<CSou
     let program = &crate::passes::prepare(program, chain);
     let mut body = String::new();
     block(program, &program.body, 1, &mut 0, &mut body);
-    Ok(CSource { header: header(program, chain, name), source: source(program, chain, name, &body) })
+    Ok(CSource { header: header(program, chain, name), source: source(program, chain, name, &body, options) })
 }
 
 fn about(program: &Program) -> String {
@@ -187,7 +201,7 @@ fn header(program: &Program, chain: &TrueChain, name: &str) -> String {
     )
 }
 
-fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> String {
+fn source(program: &Program, chain: &TrueChain, name: &str, body: &str, options: &COptions) -> String {
     let upper = name.to_uppercase();
     let added = program.chain_variables() < program.variables;
     let all = if added { program.variables.to_string() } else { format!("{upper}_VARIABLES") };
@@ -243,7 +257,16 @@ fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> Strin
         flags(held)
     );
     described(chain, name, &mut out);
-    for (section, _) in SECTIONS.iter().filter(|(section, _)| needed(section, program, body)) {
+    let (mut orders, mut on) = (String::new(), "");
+    let measured = measured(options.calibrated, program, chain);
+    if !measured.is_empty() {
+        let numbers = |o: &Order| format!("{}, {}, {}", o.code, o.degree, i32::from(o.squared));
+        let list: Vec<String> = measured.iter().map(numbers).collect();
+        orders = format!("    static const double orders[9] = {{ {} }};\n", list.join(", "));
+        on = "        if (!described && i == 0) ik_as_given(chain, pose, given, orders, &sink);\n";
+    }
+    let called = format!("{body}{on}");
+    for (section, _) in SECTIONS.iter().filter(|(section, _)| needed(section, program, &called)) {
         let start = format!("/* == {section} == */\n");
         let text =
             KERNEL.iter().find_map(|file| file.split(&start).nth(1)).expect("every section is in a file");
@@ -267,10 +290,10 @@ fn source(program: &Program, chain: &TrueChain, name: &str, body: &str) -> Strin
         out,
         "static int ik_solve_with(const ik_chain *chain, int described, const ik_frame *pose, const double *given, ik_solutions *out)\n{{\n    \
          /* At poses where several axes line up, rounding alone can hide the roots of an equation. */\n    \
-         static const double slacks[3] = {{ {:?}, 1e-5, 2e-3 }};\n    ik_sink sink;\n    int i;\n    \
+         static const double slacks[3] = {{ {:?}, 1e-5, 2e-3 }};\n{orders}    ik_sink sink;\n    int i;\n    \
          sink.chain = chain;\n    sink.pose = pose;\n    sink.out = out;\n    sink.accepted = 0;\n    sink.described = described;\n    out->count = 0;\n    \
          for (i = 0; i < 3; i++) {{\n        if (sink.accepted > 0 || (i > 0 && slacks[i] <= slacks[0])) continue;\n        \
-         sink.misses = 0;\n        sink.doubt = 0;\n        ik_attempt(pose, given, slacks[i], &sink);\n    }}\n    return out->count;\n}}\n\n\
+         sink.misses = 0;\n        sink.doubt = 0;\n        ik_attempt(pose, given, slacks[i], &sink);\n{on}    }}\n    return out->count;\n}}\n\n\
          void {name}_forward(const double values[{upper}_VARIABLES], {name}_frame *base_from_tip)\n{{\n    \
          double axes[IK_LINKS][6];\n{forward}}}\n\n\
          int {name}_solve(const {name}_frame *base_from_tip, const double *given, {name}_solutions *out)\n{{\n    \

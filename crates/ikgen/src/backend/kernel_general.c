@@ -1718,3 +1718,57 @@ static void ik_sweep(const double numbers[88], double slack, ik_candidates *foun
         if (numbers[i] > 0.0 && ik_sweep_order(&swept, ((int)numbers[i] - 1) % 24, low, high, slack, found) && !(slack > 0.0) && found->count > 0)
             break;
 }
+
+/* == as_given == */
+/* Offers candidates of the general solver of six joints, on the chain as it is. */
+static void ik_as_given(const ik_chain *chain, const ik_frame *pose, const double *given, const double orders[9], ik_sink *sink)
+{
+    ik_frame at = { { { 1.0, 0.0, 0.0 }, { 0.0, 1.0, 0.0 }, { 0.0, 0.0, 1.0 } }, { 0.0, 0.0, 0.0 } }, turn = at, next, goal;
+    double numbers[57], held[IK_VARIABLES][2], values[IK_VARIABLES];
+    const double misses[2] = { 1.0, 1.0 };
+    ik_candidates found;
+    int i, k, count = 0, taken = 0;
+    for (i = 0; i < IK_VARIABLES; i++) values[i] = ik_held[i] ? given[taken++] : 0.0;
+    for (i = 0; i < 57; i++) numbers[i] = i < 48 ? 0.0 : orders[i - 48];
+    for (i = 0; i < IK_LINKS; i++) {
+        ik_times(&at, &chain->links[i].previous_from_joint, &next);
+        at = next;
+        if (ik_held[i]) {
+            ik_cos_sin(values[i], held[i]);
+            turn.rotation[0][0] = turn.rotation[1][1] = held[i][0];
+            turn.rotation[0][1] = -held[i][1];
+            turn.rotation[1][0] = held[i][1];
+            ik_times(&next, &turn, &at);
+        } else if (count < 6) {
+            for (k = 0; k < 3; k++) {
+                numbers[6 * count + k] = at.rotation[k][2];
+                numbers[6 * count + 3 + k] = at.position[k];
+            }
+            count++;
+        }
+    }
+    ik_times(&at, &chain->last_from_tip, &next);
+    for (i = 0; i < 3; i++) {
+        for (k = 0; k < 3; k++) turn.rotation[i][k] = next.rotation[k][i];
+        turn.position[i] = -(turn.rotation[i][0] * next.position[0] + turn.rotation[i][1] * next.position[1] + turn.rotation[i][2] * next.position[2]);
+    }
+    ik_times(pose, &turn, &goal);
+    for (i = 0; i < 3; i++) {
+        for (k = 0; k < 3; k++) numbers[36 + 3 * i + k] = goal.rotation[i][k];
+        numbers[45 + i] = goal.position[i];
+    }
+    ik_six(numbers, 0.0, &found);
+    sink->misses = 0;
+    for (i = 0; i < found.count; i++) {
+        double steps[IK_VARIABLES][2], own[IK_VARIABLES];
+        taken = 0;
+        for (k = 0; k < IK_VARIABLES; k++) {
+            const ik_turn *next_turn = &found.turns[i][taken < 6 ? taken : 5];
+            steps[k][0] = ik_held[k] ? held[k][0] : next_turn->c;
+            steps[k][1] = ik_held[k] ? held[k][1] : next_turn->s;
+            own[k] = values[k];
+            if (!ik_held[k]) taken++;
+        }
+        ik_offer(sink, steps, own, misses);
+    }
+}

@@ -2,10 +2,11 @@
 
 use std::fmt::Write as _;
 
-use super::{capacity, prune};
+use super::{capacity, measured, prune};
 use crate::GoalType;
 use crate::ir::{Block, Expr, Program, RootKind, Stmt, Value};
 use crate::kernel::chain::Frame;
+use crate::kernel::six::Order;
 use crate::kernel::{CORE_SQRT, PLATFORM_SQRT, SOURCES};
 use crate::run::TrueChain;
 
@@ -14,6 +15,10 @@ use crate::run::TrueChain;
 pub struct RustOptions {
     /// Use the square root of `std` instead of the file's own: faster, but then the file needs `std`.
     pub std: bool,
+    /// Let `solve_on` ask the general solver of six joints besides, which finds all branches of a calibrated arm; the file is larger by
+    /// some 40 KB. Without it branches are tracked from those of the described arm, and some near its folds are lost. Nothing changes for
+    /// arms without six turning joints whose values are not given.
+    pub calibrated: bool,
 }
 
 /// The source file. It may be a module of any crate, or a crate of its own.
@@ -22,7 +27,7 @@ pub fn rust_source(program: &Program, chain: &TrueChain, options: &RustOptions) 
     let mut code = String::new();
     constants(program, chain, &mut code);
     code += &api(program);
-    solve(program, &mut code);
+    solve(program, &measured(options.calibrated, program, chain), &mut code);
     let mut out = String::new();
     header(program, &mut out);
     out += &prune::imports(USES, &code);
@@ -167,13 +172,14 @@ fn header(program: &Program, out: &mut String) {
 const USES: &str = "\
 pub use chain::{Frame, Link};
 pub use family::{Families, Family};
+use as_given::{as_given, with_given};
 use candidate::{Arm, MOST_MISSES, WIDER, is_exact};
 use conic::conic;
 use family::{families_of, member_of};
 use math::{angle_of, cos_sin, mirrored, opposite, sqrt};
 use octic::octic;
 use roots::{align, circle, half, mirror, quadratic};
-use six::six_of;
+use six::{Order, six_of};
 use sweep::sweep_of;
 ";
 
@@ -337,23 +343,54 @@ fn max(a: f64, b: f64) -> f64 {
 
 ";
 
-fn solve(program: &Program, out: &mut String) {
-    out.push_str(
-        "/// As [`solve`], for a chain whose constants are near those of the described one.\n\
+/// Candidates of the general solver on the chain as it is.
+const MEASURED: &str = "\
+/// Offers candidates of the general solver of six joints, on the chain as it is.
+fn attempt_on(base_from_tip: &Frame, free: &[f64; FREE.len()], sink: &mut Sink<'_>) {
+    let mut values = [0.0; VARIABLES];
+    for (v, value) in FREE.into_iter().zip(free) {
+        values[v] = *value;
+    }
+    sink.misses = 0;
+    let found = as_given(&sink.arm, base_from_tip, &values, &ORDERS);
+    for i in 0..found.count() {
+        let all = with_given(&sink.arm, found.get(i), &values);
+        sink.offer(core::array::from_fn(|v| all[v]), values, [f64::INFINITY; 2]);
+    }
+}
+
+";
+
+fn solve(program: &Program, measured: &[Order], out: &mut String) {
+    if !measured.is_empty() {
+        let list: Vec<String> = measured
+            .iter()
+            .map(|o| format!("Order {{ code: {}, degree: {}, squared: {} }}", o.code, o.degree, o.squared))
+            .collect();
+        let _ = writeln!(
+            out,
+            "/// Orders of elimination for a calibrated chain.\nconst ORDERS: [Order; {}] = [{}];\n",
+            list.len(),
+            list.join(", ")
+        );
+        out.push_str(MEASURED);
+    }
+    let on = "    if !described {\n        attempt_on(base_from_tip, free, &mut sink);\n    }\n";
+    let text = "/// As [`solve`], for a chain whose constants are near those of the described one.\n\
          pub fn solve_on(chain: &Chain, base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {\n    \
          solve_with(chain, false, base_from_tip, free, out);\n}\n\n\
          fn solve_with(chain: &Chain, described: bool, base_from_tip: &Frame, free: &[f64; FREE.len()], out: &mut Solutions) {\n    \
          out.len = 0;\n    \
          let mut sink = Sink { arm: arm(chain), base_from_tip, out, accepted: 0, misses: 0, doubt: false, described };\n    \
-         attempt(base_from_tip, free, SLACK, &mut sink);\n    \
+         attempt(base_from_tip, free, SLACK, &mut sink);\nMEASURED    \
          for slack in WIDER {\n        \
          if sink.accepted == 0 && slack > SLACK {\n            sink.misses = 0;\n            sink.doubt = false;\n            \
          attempt(base_from_tip, free, slack, &mut sink);\n        }\n    }\n}\n\n\
          /// Offers candidates; the equations may miss their roots by `slack`.\n\
          fn attempt(base_from_tip: &Frame, free: &[f64; FREE.len()], slack: f64, sink: &mut Sink<'_>) {\n    \
          let [[r00, r01, r02], [r10, r11, r12], [r20, r21, r22]] = base_from_tip.rotation;\n    \
-         let [px, py, pz] = base_from_tip.position;\n",
-    );
+         let [px, py, pz] = base_from_tip.position;\n";
+    *out += &text.replace("MEASURED", if measured.is_empty() { "" } else { on });
     let free: Vec<String> = (0..program.free.len()).map(|k| format!("free{k}")).collect();
     let _ = writeln!(out, "    let [{}] = *free;", free.join(", "));
     let mut loops = 0;

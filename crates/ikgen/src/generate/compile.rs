@@ -113,9 +113,13 @@ impl Compiled {
     }
 
     /// The program as C header and source; `name` is the prefix of what they export and the stem of the files.
-    pub fn c_source(&self, name: &str) -> Result<crate::backend::CSource, crate::backend::CError> {
+    pub fn c_source(
+        &self,
+        name: &str,
+        options: &crate::backend::COptions,
+    ) -> Result<crate::backend::CSource, crate::backend::CError> {
         let chain = crate::run::TrueChain::new(&self.longer).expect("the chain was small enough to compile");
-        crate::backend::c_source(&self.program, &chain, name)
+        crate::backend::c_source(&self.program, &chain, name, options)
     }
 
     /// The chain that was compiled.

@@ -7,6 +7,7 @@
 // `!(x < y)` is meant: a NaN must count as too large.
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
+pub mod as_given;
 pub mod candidate;
 pub mod chain;
 pub mod conic;
@@ -27,7 +28,7 @@ pub mod waves;
 
 /// Source text of the kernel files, as generated files carry what they call of it; the square root comes in two kinds.
 #[cfg(feature = "generate")]
-pub(crate) const SOURCES: [(&str, &str); 15] = [
+pub(crate) const SOURCES: [(&str, &str); 16] = [
     ("math", include_str!("math.rs")),
     ("roots", include_str!("roots.rs")),
     ("chain", include_str!("chain.rs")),
@@ -43,6 +44,7 @@ pub(crate) const SOURCES: [(&str, &str); 15] = [
     ("six", include_str!("six.rs")),
     ("piece", include_str!("piece.rs")),
     ("sweep", include_str!("sweep.rs")),
+    ("as_given", include_str!("as_given.rs")),
 ];
 
 /// The square root of the platform.

@@ -13,6 +13,7 @@ mod true_chain;
 
 pub use batch::Batch;
 pub use bytecode::{Bytecode, Candidate, TooLarge};
+pub(crate) use general::six_lines;
 pub use redundancy::{Completeness, FreeIntervals, RedundancyOptions, Side, SwivelBranch};
 pub use solver::{Engine, LoadError, Solver};
 pub use true_chain::TrueChain;

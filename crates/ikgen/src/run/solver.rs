@@ -268,7 +268,7 @@ impl Solver {
             for (variable, value) in self.program.free.iter().zip(free) {
                 given[*variable] = *value;
             }
-            general.candidates(&self.chain, &self.held, base_from_tip, &given, |steps| {
+            general.candidates(&arm, base_from_tip, &given[..all], |steps| {
                 let mut values = given;
                 let right = arm.settle(base_from_tip, steps, &mut values[..all]);
                 let verdict = keep(right, &values[..all]);

@@ -59,6 +59,13 @@ impl TrueChain {
         Some(Self { links, last_from_tip, variables: chain.variables.len(), slides })
     }
 
+    /// The numbers that generated sources take as a chain: of the frame of each joint, from base to tip, and then of the tip, the rotation
+    /// row by row and the position (metres). For calibrated arms, whose constants are data.
+    pub fn constants(&self) -> Vec<f64> {
+        let frames = self.links.iter().map(|link| &link.previous_from_joint).chain([&self.last_from_tip]);
+        frames.flat_map(|f| f.rotation.as_flattened().iter().chain(&f.position).copied()).collect()
+    }
+
     /// The lines about which its joints turn at zero, and the pose of the tip there, in the base frame; `None` unless all joints turn, each by a
     /// variable of its own, in order.
     pub(crate) fn lines(&self) -> Option<(Vec<Line>, Frame)> {

@@ -8,9 +8,10 @@ use std::process::{Command, Stdio};
 
 use robotc_core::Seed;
 use robotc_core::ik::{FamilyPath, IkSolutions, InverseKinematics};
-use robotc_ikgen::backend::{CError, RustOptions};
+use robotc_ikgen::backend::{CError, COptions, RustOptions};
+use robotc_ikgen::check;
 use robotc_ikgen::report::poses;
-use robotc_ikgen::run::Engine;
+use robotc_ikgen::run::{Engine, TrueChain};
 use robotc_ikgen::{Compiled, GoalType, Options, Solver, compile};
 
 use crate::{arms, coupled, goals, golden};
@@ -130,7 +131,7 @@ fn rust_programs(folder: &Path, compiled: &[Compiled], std: bool, flavour: &str)
     let mut arms = String::new();
     for c in compiled {
         let name = &c.chain().name;
-        let source = c.rust_source(&RustOptions { std });
+        let source = c.rust_source(&RustOptions { std, ..RustOptions::default() });
         let large = ["general", "offset wrist,"].iter().any(|k| c.class.contains(k));
         let most = if large { 100_000 } else { 65_000 };
         assert!(source.len() < most, "{name}: {} bytes", source.len());
@@ -283,7 +284,7 @@ fn c_program(folder: &Path, compiled: &[Compiled]) -> bool {
     let strict = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-ffp-contract=off", "-O1"];
     for c in compiled {
         let name = c.chain().name.clone();
-        let source = c.c_source(&name).unwrap();
+        let source = c.c_source(&name, &COptions::default()).unwrap();
         std::fs::write(folder.join(format!("{name}.h")), source.header).unwrap();
         std::fs::write(folder.join(format!("{name}.c")), source.source).unwrap();
         let _ = writeln!(main, "#include \"{name}.h\"");
@@ -320,10 +321,10 @@ fn generated_sources_are_as_recorded() {
     // They are what the example is made of.
     let example = |file: &str| format!("../../../../examples/drop_in_ik/{file}");
     golden::check(&example("src/kr6.rs"), &compiled.rust_source(&RustOptions::default()));
-    let c = compiled.c_source("kr6").unwrap();
+    let c = compiled.c_source("kr6", &COptions::default()).unwrap();
     golden::check(&example("cpp/kr6.h"), &c.header);
     golden::check(&example("cpp/kr6.c"), &c.source);
-    assert!(matches!(compiled.c_source("kr-6"), Err(CError::Name(_))));
+    assert!(matches!(compiled.c_source("kr-6", &COptions::default()), Err(CError::Name(_))));
 }
 
 #[test]
@@ -347,3 +348,124 @@ fn generated_c_is_used_from_c_plus_plus() {
     let last = "8 solutions, all reach the pose\n4 members of families at a singular pose\n";
     assert!(output.status.success() && text.ends_with(last), "{text}");
 }
+
+/// Generated sources find every branch of calibrated arms, whose constants they are given, Rust and C the same bits.
+#[test]
+fn generated_sources_solve_calibrated_arms() {
+    let folder = tempfile::tempdir().unwrap();
+    for chain in [arms::kr6(), arms::panda(), arms::xarm6()] {
+        let compiled = compile(&chain, &Options::default()).unwrap();
+        let mut rng = Seed::new(9).rng();
+        let mut corpus = String::new();
+        let mut vectors = Vec::new();
+        for _ in 0..4 {
+            let measured = arms::calibrated(chain.clone(), &mut rng);
+            let constants = TrueChain::new(&measured).unwrap().constants();
+            for _ in 0..50 {
+                let vector = poses::random(&measured, &mut rng);
+                let pose = measured.forward(&vector);
+                let r = pose.rotation.to_rotation_matrix();
+                let rows = (0..9).map(|i| r[(i / 3, i % 3)]);
+                let numbers =
+                    constants.iter().copied().chain(rows).chain(pose.translation.vector.iter().copied());
+                let given = compiled.free.iter().map(|v| vector[*v]);
+                let words: Vec<String> =
+                    numbers.chain(given).map(|x| format!("{:016x}", x.to_bits())).collect();
+                corpus += &(words.join(" ") + "\n");
+                vectors.push(vector);
+            }
+        }
+        std::fs::write(folder.path().join("corpus"), corpus).unwrap();
+        let options = RustOptions { calibrated: true, ..RustOptions::default() };
+        let source = compiled.rust_source(&options);
+        assert!(source.len() < 100_000, "{}: {} bytes", chain.name, source.len());
+        std::fs::write(folder.path().join("solver.rs"), source).unwrap();
+        std::fs::write(folder.path().join("measured.rs"), RUST_ON).unwrap();
+        rustc(folder.path(), &["measured.rs", "-o", "measured_rust", "-Copt-level=1"]);
+        let found = answers(Command::new(folder.path().join("measured_rust")), folder.path());
+        for (vector, answers) in vectors.iter().zip(&found) {
+            let same = |answer: &Vec<f64>| check::same(answer, vector, &vec![false; vector.len()], 1e-6);
+            assert!(answers.iter().any(same), "{}: {vector:?} {answers:?}", chain.name);
+        }
+        if ["cc", "c++"].iter().any(|c| Command::new(c).arg("--version").output().is_err()) {
+            println!("skipped: no C compiler");
+            continue;
+        }
+        let source = compiled.c_source("solver", &COptions { calibrated: true }).unwrap();
+        std::fs::write(folder.path().join("solver.h"), source.header).unwrap();
+        std::fs::write(folder.path().join("solver.c"), source.source).unwrap();
+        std::fs::write(folder.path().join("measured.c"), C_ON).unwrap();
+        let strict = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-ffp-contract=off", "-O1", "-std=c99"];
+        let files = ["solver.c", "measured.c", "-o", "measured_c", "-lm"];
+        run(folder.path(), "cc", &[&strict[..], &files].concat());
+        let by_c = answers(Command::new(folder.path().join("measured_c")), folder.path());
+        same_bits("C", &std::fs::read_to_string(folder.path().join("corpus")).unwrap(), &found, &by_c);
+    }
+}
+
+/// Of each joint frame and of the tip rotation and position, then the pose, then what is given.
+const RUST_ON: &str = r#"
+mod solver;
+use solver::*;
+
+fn main() {
+    for line in std::io::stdin().lines() {
+        let line = line.unwrap();
+        let x: Vec<f64> = line.split_whitespace().map(|w| f64::from_bits(u64::from_str_radix(w, 16).unwrap())).collect();
+        let frame = |k: usize| {
+            let at = |i: usize| [x[12 * k + i], x[12 * k + i + 1], x[12 * k + i + 2]];
+            Frame { rotation: [at(0), at(3), at(6)], position: at(9) }
+        };
+        let mut chain = DESCRIBED;
+        let joints = chain.links.len();
+        for (k, link) in chain.links.iter_mut().enumerate() {
+            link.previous_from_joint = frame(k);
+        }
+        chain.last_from_tip = frame(joints);
+        let mut found = Solutions::new();
+        solve_on(&chain, &frame(joints + 1), x[12 * (joints + 2)..].try_into().unwrap(), &mut found);
+        println!("{}", found.as_slice().len());
+        for values in found.as_slice() {
+            let bits: Vec<String> = values.iter().map(|x| format!("{:016x}", x.to_bits())).collect();
+            println!("{}", bits.join(" "));
+        }
+    }
+}
+"#;
+
+const C_ON: &str = r#"
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include "solver.h"
+
+#define NUMBERS (12 * (SOLVER_LINKS + 2) + SOLVER_GIVEN)
+
+int main(void)
+{
+    uint64_t bits;
+    double x[NUMBERS + 1];
+    int n = 0, i, k;
+    while (scanf("%" SCNx64, &bits) == 1) {
+        solver_chain chain = solver_described;
+        solver_frame pose;
+        solver_solutions found;
+        memcpy(&x[n++], &bits, sizeof bits);
+        if (n < NUMBERS) continue;
+        n = 0;
+        for (i = 0; i < SOLVER_LINKS; i++) memcpy(&chain.links[i].previous_from_joint, x + 12 * i, sizeof pose);
+        memcpy(&chain.last_from_tip, x + 12 * SOLVER_LINKS, sizeof pose);
+        memcpy(&pose, x + 12 * (SOLVER_LINKS + 1), sizeof pose);
+        solver_solve_on(&chain, &pose, x + 12 * (SOLVER_LINKS + 2), &found);
+        printf("%d\n", found.count);
+        for (i = 0; i < found.count; i++) {
+            for (k = 0; k < SOLVER_VARIABLES; k++) {
+                memcpy(&bits, &found.values[i][k], sizeof bits);
+                printf("%016" PRIx64 " ", bits);
+            }
+            printf("\n");
+        }
+    }
+    return 0;
+}
+"#;

@@ -11,7 +11,7 @@ class GeneratedSolver(InverseKinematics):
     @property
     def type(self) -> str:
         """What it is asked for, such as `transform6d`."""
-    def write(self, path: Path) -> None:
+    def write(self, path: Path, *, calibrated: bool = False) -> None:
         """Writes the solver to a file: Rust (`.rs`), C with its header beside it (`.c`), or the solution program (`.ik`)."""
 
 def generate(
