@@ -2,13 +2,18 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
+use nalgebra::Point3;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use robotc_core::Seed;
+use robotc_core::geom::{HeightField, PointCloud};
+use robotc_core::model::{Geometry, Origin, Shape};
+use robotc_core::task::Obstacle;
 use robotc_planning::manipulation;
 use robotc_planning::{Budget, Interrupt};
 use robotc_runtime::film::{TreeKeeper, film};
@@ -33,6 +38,25 @@ pub(crate) struct Plan {
     trees: TreeKeeper,
     table: MotionTable,
     seconds: f64,
+}
+
+impl Session {
+    fn with_seen(
+        &self,
+        name: &str,
+        shape: Shape,
+        pose: Option<PyReadonlyArray2<'_, f64>>,
+        without_robot: Option<f64>,
+    ) -> PyResult<Self> {
+        if without_robot.is_some_and(|margin| !(0.0..=1.0).contains(&margin)) {
+            return Err(PyValueError::new_err("`without_robot` is between 0 and 1 m"));
+        }
+        let world_from_obstacle = pose.as_ref().map(arrays::pose).transpose()?.unwrap_or_default();
+        let geometry = Arc::new(vec![Geometry { origin: Origin::default(), shape, colour: None }]);
+        let seen = Obstacle { name: name.to_owned(), geometry, world_from_obstacle, without_robot };
+        let session = self.session.with_obstacle(seen);
+        Ok(Self { session: session.map_err(|error| PyValueError::new_err(error.to_string()))? })
+    }
 }
 
 /// Ticks a second of the simulated controller.
@@ -64,6 +88,45 @@ impl Session {
             return Err(PyValueError::new_err(format!("expected {expected} joint values, got {found}")));
         }
         Ok(arrays::matrix(py, &self.session.arm().world_from_tool(&values)))
+    }
+
+    /// The same session with a cloud of points as an obstacle.
+    #[pyo3(signature = (name, points, radius, pose = None, without_robot = None))]
+    fn with_cloud(
+        &self,
+        name: &str,
+        points: PyReadonlyArray2<'_, f64>,
+        radius: f64,
+        pose: Option<PyReadonlyArray2<'_, f64>>,
+        without_robot: Option<f64>,
+    ) -> PyResult<Self> {
+        let points = points.as_array();
+        if points.ncols() != 3 {
+            return Err(PyValueError::new_err(format!(
+                "points have the shape (n, 3), not {:?}",
+                points.shape()
+            )));
+        }
+        let finite = points.outer_iter().filter(|p| p.iter().all(|x| x.is_finite()));
+        let cloud = PointCloud::new(finite.map(|p| Point3::new(p[0], p[1], p[2])).collect(), radius);
+        let cloud = Arc::new(cloud.map_err(|error| PyValueError::new_err(error.to_string()))?);
+        self.with_seen(name, Shape::Cloud { cloud, uri: String::new() }, pose, without_robot)
+    }
+
+    /// The same session with heights on a grid as an obstacle.
+    #[pyo3(signature = (name, heights, spacing, floor = None, pose = None))]
+    fn with_heights(
+        &self,
+        name: &str,
+        heights: PyReadonlyArray2<'_, f64>,
+        spacing: [f64; 2],
+        floor: Option<f64>,
+        pose: Option<PyReadonlyArray2<'_, f64>>,
+    ) -> PyResult<Self> {
+        let heights = heights.as_array();
+        let field = HeightField::new(heights.ncols(), heights.iter().copied().collect(), spacing, floor);
+        let field = Arc::new(field.map_err(|error| PyValueError::new_err(error.to_string()))?);
+        self.with_seen(name, Shape::HeightField { field, uri: String::new() }, pose, None)
     }
 
     /// A problem of free motion with all defaults and no goal, as JSON.

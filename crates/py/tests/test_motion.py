@@ -107,3 +107,34 @@ def test_options(session, plan):
     np.testing.assert_array_equal(same.positions, plan.positions)
     with pytest.raises(ValueError, match="margn"):
         session.plan(options='{"margn": 1}')
+
+
+def test_what_a_camera_sees(session):
+    way = np.array([session.start, turned(session)])
+    assert session.validate(way) is None
+    tool = session.tool(turned(session, 0.2))
+    grid = np.stack(np.meshgrid(np.linspace(-0.03, 0.03, 7), np.linspace(-0.03, 0.03, 7), [0.0]), -1).reshape(-1, 3)
+    grid = np.vstack([grid, [np.nan, 0.0, 0.0]])
+    seen = session.with_cloud("scan", grid, 0.01, pose=tool)
+    met = seen.validate(way)
+    assert met["body"] == "scan" and met["depth"] > 0
+    assert session.validate(way) is None, "the first session stays as it was"
+    around = seen.plan_motion(goals=way[1:])
+    assert seen.validate(around.path) is None
+    # Points on the robot where it starts are its own.
+    own = session.with_cloud("scan", session.tool(session.start)[:3, 3][None], 0.01, without_robot=0.2)
+    assert own.validate(way[:1]) is None
+    # The same name again takes its place.
+    assert seen.with_cloud("scan", grid + 9.0, 0.01).validate(way) is None
+    hills = np.full((20, 20), tool[2, 3] + 0.02)
+    hills[:, 10:] = np.nan
+    pose = np.eye(4)
+    pose[:2, 3] = tool[:2, 3] - [0.05, 0.1]
+    met = session.with_heights("hill", hills, (0.01, 0.01), floor=-1.0, pose=pose).validate(way)
+    assert met["body"] == "hill"
+    with pytest.raises(ValueError, match="shape"):
+        session.with_cloud("scan", np.zeros((3, 2)), 0.01)
+    with pytest.raises(ValueError, match="radius"):
+        session.with_cloud("scan", grid, 0.0)
+    with pytest.raises(ValueError, match="floor"):
+        session.with_heights("hill", np.zeros((2, 2)), (0.1, 0.1), floor=1.0)

@@ -3,7 +3,9 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::own_points::without_own_points;
-use robotc_core::task::Task;
+use robotc_core::geom::{DecomposeOptions, HullError, parts_of};
+use robotc_core::task::{Obstacle, Task};
+use robotc_core::world::Body;
 use robotc_core::{Configuration, Kinematics, LinkIdx, LinkPoses, SerialChain, TypedVec, World};
 use robotc_ikgen::Solver;
 use robotc_kb::kinds::{
@@ -52,6 +54,17 @@ pub enum NoPlan {
     /// None of the plans that it found passed the certificate; this is what was wrong with the last.
     #[error("the plan does not hold: {0}")]
     Uncertified(#[from] Uncertified),
+}
+
+/// Why something cannot be put into a session.
+#[derive(Debug, Error)]
+pub enum SeenError {
+    /// What has this name is no plain obstacle.
+    #[error("\"{0}\" is an object or an article of the task")]
+    Taken(String),
+    /// It has no convex parts.
+    #[error(transparent)]
+    Parts(#[from] HullError),
 }
 
 /// Plans made before giving up on one that holds.
@@ -138,6 +151,48 @@ impl Session {
             });
         }
         Ok(Self { task, kinematics, arm, scene, links, object_covers, grasps, cages, reachability })
+    }
+
+    /// The same session with one more obstacle, or with another in the place of the one of this name: what a camera sees now. Nothing is
+    /// compiled; what is no primitive, cloud or height field is cut into convex parts here.
+    pub fn with_obstacle(&self, seen: Obstacle) -> Result<Self, SeenError> {
+        let name = seen.name.clone();
+        let mut task = Task::clone(&self.task);
+        let taken = task.objects.iter().any(|object| object.name == name);
+        match task.obstacles.iter().position(|obstacle| obstacle.name == name) {
+            // The links of articles move, and are grasped.
+            _ if taken || task.articles.iter().any(|a| name.split('/').next() == Some(&a.name)) => {
+                return Err(SeenError::Taken(name));
+            }
+            Some(known) => task.obstacles[known] = seen,
+            None => task.obstacles.push(seen),
+        }
+        let task = without_own_points(&Arc::new(task), &self.kinematics, &self.links.parts);
+        let obstacle = task.obstacles.iter().find(|o| o.name == name).expect("it has just been put there");
+        let parts = parts_of(&obstacle.geometry, &DecomposeOptions::default())?;
+        let body = Body {
+            name,
+            geometry: obstacle.geometry.clone(),
+            world_from_body: obstacle.world_from_obstacle,
+            enabled: true,
+        };
+        let links = LinkShapes {
+            parts: self.links.parts.clone(),
+            covers: self.links.covers.clone(),
+            pairs: self.links.pairs.clone(),
+            at_start: self.links.at_start.clone(),
+        };
+        Ok(Self {
+            scene: self.scene.with_body(&body, &parts),
+            task,
+            kinematics: self.kinematics.clone(),
+            arm: self.arm.clone(),
+            links,
+            object_covers: self.object_covers.clone(),
+            grasps: self.grasps.clone(),
+            cages: self.cages.clone(),
+            reachability: self.reachability.clone(),
+        })
     }
 
     /// What shall happen.

@@ -7,6 +7,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clap::{Args, Subcommand};
+use robotc_core::geom::PointCloud;
+use robotc_core::model::Shape;
 use robotc_core::urdf::{self, MeshPolicy};
 use robotc_core::{Sources, srdf};
 use robotc_kb::os::OsSystem;
@@ -48,6 +50,9 @@ struct Input {
     /// Its semantic description: pairs of links that need no test
     #[arg(long, value_name = "FILE")]
     srdf: PathBuf,
+    /// Give the obstacles of each problem as one cloud of points on their surfaces, no more than this far apart, metres
+    #[arg(long, value_name = "SPACING", value_parser = spacing)]
+    cloud: Option<f64>,
     #[command(flatten)]
     reading: DescriptionArgs,
     /// File for all figures
@@ -104,7 +109,7 @@ pub(crate) fn run(args: &Bench) -> Outcome {
 }
 
 fn checks(args: &Checks) -> Outcome {
-    let set = problems(&args.input.problems)?;
+    let set = problems(&args.input)?;
     let clock = Instant::now();
     let now = || clock.elapsed().as_secs_f64();
     let (robot, _) = robot(&args.input, &set, &now)?;
@@ -140,7 +145,7 @@ fn write_report(input: &Input, report: &impl serde::Serialize) -> Outcome {
 }
 
 fn motion(args: &Motion) -> Outcome {
-    let set = problems(&args.input.problems)?;
+    let set = problems(&args.input)?;
     let clock = Instant::now();
     let now = || clock.elapsed().as_secs_f64();
     let (robot, ready_s) = robot(&args.input, &set, &now)?;
@@ -173,8 +178,45 @@ fn robot(input: &Input, set: &ProblemSet, now: &dyn Fn() -> f64) -> Outcome<(Ben
     Ok((robot.map_err(|error| Failure::Input(error.to_string()))?, now() - start))
 }
 
+fn spacing(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|x| (1e-4..=1.0).contains(x));
+    value.ok_or_else(|| "it has to be between 0.0001 and 1".to_owned())
+}
+
+/// The problems that are asked for: as they are, or among points.
+fn problems(input: &Input) -> Outcome<ProblemSet> {
+    let set = read_problems(&input.problems)?;
+    let Some(spacing) = input.cloud else { return Ok(set) };
+    let set = set.as_clouds(spacing).map_err(|error| Failure::Input(error.to_string()))?;
+    let mut points: Vec<usize> = clouds(&set).map(|cloud| cloud.points().len()).collect();
+    points.sort_unstable();
+    if let Some(cloud) = clouds(&set).find(|cloud| cloud.points().len() == points[points.len() / 2]) {
+        let (again, radius) = (cloud.points().to_vec(), cloud.radius());
+        let clock = Instant::now();
+        let made = PointCloud::new(again, radius).is_ok();
+        let milliseconds = clock.elapsed().as_secs_f64() * 1e3;
+        debug_assert!(made);
+        print(&format!(
+            "clouds of {} to {} points, made in {milliseconds:.2} ms for {} of them",
+            points[0],
+            points[points.len() - 1],
+            points[points.len() / 2],
+        ));
+    }
+    Ok(set)
+}
+
+/// All clouds among the obstacles.
+fn clouds(set: &ProblemSet) -> impl Iterator<Item = &PointCloud> {
+    let obstacles = set.problems.iter().flat_map(|problem| &problem.obstacles);
+    obstacles.flat_map(|obstacle| obstacle.geometry.iter()).filter_map(|element| match &element.shape {
+        Shape::Cloud { cloud, .. } => Some(&**cloud),
+        _ => None,
+    })
+}
+
 /// Problems from a file, unpacked when its name ends in `.xz`.
-fn problems(path: &Path) -> Outcome<ProblemSet> {
+fn read_problems(path: &Path) -> Outcome<ProblemSet> {
     let wrong = |message: String| Failure::Input(format!("{}: {message}", path.display()));
     let mut file = File::open(path).map_err(|error| wrong(error.to_string()))?;
     let mut text = String::new();

@@ -8,6 +8,7 @@
 
 mod caging;
 mod checks;
+mod clouds;
 mod grasps;
 mod mobile;
 mod placement;
@@ -19,6 +20,7 @@ mod weights;
 
 pub use caging::{Attempt, CagingBenchOptions, CagingPlace, CagingReport, measure_caging};
 pub use checks::{CheckRates, measure_checks};
+pub use clouds::RADIUS_FOR_SPACING;
 pub use grasps::{GraspBenchOptions, GraspReport, measure_grasps};
 pub use mobile::{MobileBenchOptions, MobileFigures, MobileReport, measure_mobile};
 pub use placement::{PlacementFigures, PlacementReport, measure_placement};

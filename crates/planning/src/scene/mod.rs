@@ -174,6 +174,26 @@ impl Scene {
         self.bodies[body].body_from_world = world_from_body.inverse();
     }
 
+    /// The same scene with one more body of this look, or with one of another look in its place; `parts` are the convex parts of what
+    /// is no pile, in the frame of the body.
+    pub fn with_body(&self, body: &robotc_core::world::Body, parts: &ConvexParts) -> Self {
+        let mut scene = self.clone();
+        let made = Body {
+            name: body.name.as_str().into(),
+            geometry: body.geometry.clone(),
+            shape: Arc::new(Shape::new(parts, &body.geometry)),
+            world_from_body: body.world_from_body,
+            body_from_world: body.world_from_body.inverse(),
+        };
+        match scene.bodies.position(|known| *known.name == body.name) {
+            Some(known) => scene.bodies[known] = made,
+            None => {
+                scene.bodies.push(made);
+            }
+        }
+        scene
+    }
+
     /// The same scene with one body elsewhere.
     pub fn with_body_at(&self, body: BodyIdx, world_from_body: Pose) -> Self {
         let mut scene = self.clone();

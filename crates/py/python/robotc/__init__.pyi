@@ -204,6 +204,32 @@ class Session:
         """Their values where the task starts."""
     def tool(self, q: Array) -> Array:
         """`world_from_tool`, shape (4, 4)."""
+    def with_cloud(
+        self,
+        name: str,
+        points: Array,
+        radius: float,
+        pose: Array | None = None,
+        without_robot: float | None = None,
+    ) -> Session:
+        """The same session with measured points, shape (n, 3), as an obstacle, or in the place of the obstacle of this name.
+
+        Each point is a ball of `radius` metres; those that are no numbers are left out. `pose` is `world_from_points`. Points within
+        `without_robot` metres of the robot where the task starts are its own and left out.
+        """
+    def with_heights(
+        self,
+        name: str,
+        heights: Array,
+        spacing: tuple[float, float],
+        floor: float | None = None,
+        pose: Array | None = None,
+    ) -> Session:
+        """The same session with measured heights, shape (rows, columns), as an obstacle, or in the place of the obstacle of this name.
+
+        Columns are `spacing[0]` metres apart along x, rows `spacing[1]` along y. It is solid down to `floor`; NaN is a hole. `pose` is
+        `world_from_heights`, the frame of the first sample.
+        """
     def plan(self, seed: int | None = None, time_limit: float = 30.0, options: str | None = None) -> Plan:
         """Plans the whole task: picking, placing, doors. `options` is JSON with what differs from `options()`."""
     def options(self) -> str:
