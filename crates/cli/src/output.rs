@@ -1,6 +1,7 @@
 //! What reaches the terminal: rendered diagnostics, errors, and the exit code.
 
 use std::io::{IsTerminal, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
@@ -67,6 +68,13 @@ pub(crate) fn print_text(text: &str) {
 /// Writes a line to standard error: messages for people, not results.
 pub(crate) fn say(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
+/// Says which keys of a document were ignored.
+pub(crate) fn warn_of_unknown_keys(file: &Path, text: &str, known: &impl serde::Serialize) {
+    for key in robotc_planning::problem::unknown_keys(text, known) {
+        say(&format!("warning: {}: {key}", file.display()));
+    }
 }
 
 /// Renders all diagnostics to standard error, then a line with their number if there are any.

@@ -11,7 +11,6 @@ use crate::edge::{Blocked, EdgeChecker, Obstruction};
 
 /// Parameters of a straight motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct LineOptions {
     /// Longest way of the tool between two configurations, metres.
     pub step: f64,

@@ -17,7 +17,7 @@ use crate::tree::Tree;
 
 /// Parameters of an exploring search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct ExploreOptions {
     /// Longest edge, as a fraction of the diameter of the space.
     pub step: f64,

@@ -16,7 +16,7 @@ use crate::edge::{EdgeChecker, Obstruction};
 
 /// Parameters of jittering. Lengths are travel of the fastest point, in the unit of [`EdgeChecker::travel`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct JitterOptions {
     /// Radius of the first ball.
     pub smallest: f64,

@@ -8,7 +8,7 @@ use crate::edge::EdgeChecker;
 
 /// One pass over a path. Passes keep the ends, never make the path longer, and add only edges that were checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[serde(rename_all = "snake_case")]
 pub enum Smoother {
     /// Leaves out states: from each, goes straight to the farthest later state that can be reached.
     Skip,

@@ -1,7 +1,9 @@
 //! Exceptions: one for wrong input, with its diagnostics, and ones for planning and for the machine.
 
+use std::ffi::CString;
+
 use pyo3::create_exception;
-use pyo3::exceptions::{PyException, PyValueError};
+use pyo3::exceptions::{PyException, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use robotc_core::{Diagnostics, Severity, Sources};
@@ -57,4 +59,9 @@ pub(crate) fn accept<T>(
             Err(error)
         }
     }
+}
+
+/// A `UserWarning`; an error where warnings are errors.
+pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
+    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(text).unwrap_or_default(), 1)
 }

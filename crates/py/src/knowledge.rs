@@ -1,15 +1,13 @@
 //! Knowledge bases: compiling into one and looking at what it holds.
 
-use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use robotc_kb::{Event, Graph, Knowledge, Observer, Outcome, Project, Store};
 
-use crate::errors::{CompileError, PlanError};
+use crate::errors::{CompileError, PlanError, warn};
 use crate::inverse::InverseKinematics;
 use crate::long::{self, Interrupts};
 use crate::plan::Session;
@@ -45,8 +43,7 @@ impl<'a> Watch<'a> {
 impl Observer for Watch<'_> {
     fn event(&self, event: Event<'_>) {
         if let Event::Warning { kind, subject, message } = event {
-            let text = CString::new(format!("{kind} of {subject}: {message}")).unwrap_or_default();
-            let warned = Python::attach(|py| PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1));
+            let warned = Python::attach(|py| warn(py, &format!("{kind} of {subject}: {message}")));
             self.interrupts.keep(warned);
             return;
         }

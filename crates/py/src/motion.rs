@@ -8,12 +8,12 @@ use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use robotc_planning::problem::{HeldDocument, PoseDocument};
+use robotc_planning::problem::{HeldDocument, PoseDocument, unknown_keys};
 use robotc_planning::{Interrupt, PlanningProblem, Registry};
 use robotc_runtime::motion::interrupted;
 
 use crate::arrays;
-use crate::errors::PlanError;
+use crate::errors::{PlanError, warn};
 use crate::long;
 
 /// A free motion of an arm.
@@ -47,7 +47,12 @@ impl Given<'_> {
                     Ok(text) => text,
                     Err(_) => document.py().import("json")?.call_method1("dumps", (document,))?.extract()?,
                 };
-                session.read_problem(&text).map_err(|error| PyValueError::new_err(error.to_string()))?
+                let problem =
+                    session.read_problem(&text).map_err(|error| PyValueError::new_err(error.to_string()))?;
+                for key in unknown_keys(&text, &problem) {
+                    warn(document.py(), &key.to_string())?;
+                }
+                problem
             }
         };
         for (name, pose) in &self.bodies {

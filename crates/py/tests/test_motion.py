@@ -62,8 +62,8 @@ def test_documents(session):
         assert session.tool(q)[2, 2] < -np.cos(0.5) + 1e-6
     text = session.plan_motion(problem=json.dumps(problem))
     np.testing.assert_allclose(text.path[-1], turned(session), atol=1e-12)
-    with pytest.raises(ValueError, match="unknown field"):
-        session.plan_motion(problem={**problem, "goal": []})
+    with pytest.warns(UserWarning, match="`sed` is not known, and ignored; did you mean `seed`"):
+        session.plan_motion(problem={**{k: v for k, v in problem.items() if k != "seed"}, "sed": 3})
 
 
 def test_contacts(session):

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use super::compile::write_whole;
 use crate::knowledge::{self, StoreArgs};
-use crate::output::{Failure, Outcome, print, say};
+use crate::output::{Failure, Outcome, print, say, warn_of_unknown_keys};
 use crate::settings::Settings;
 
 /// Plan a free motion of a task's arm from a problem document
@@ -59,7 +59,9 @@ pub(crate) fn run(args: &Plan) -> Outcome {
     }
     let file = args.problem.as_deref().unwrap_or(Path::new(""));
     let wrong = |error: &dyn std::fmt::Display| Failure::Input(format!("{}: {error}", file.display()));
-    let mut problem = session.read_problem(&read(file)?).map_err(|error| wrong(&error))?;
+    let text = read(file)?;
+    let mut problem = session.read_problem(&text).map_err(|error| wrong(&error))?;
+    warn_of_unknown_keys(file, &text, &problem);
     problem.race = args.race.unwrap_or(problem.race);
     match &args.validate {
         Some(path) => validate(&session, &problem, path),

@@ -15,7 +15,7 @@ use serde::Serialize;
 
 use super::compile::write_whole;
 use crate::knowledge::{self, StoreArgs};
-use crate::output::{Failure, Outcome, count, print, say};
+use crate::output::{Failure, Outcome, count, print, say, warn_of_unknown_keys};
 use crate::settings::Settings;
 
 /// Compile what a task needs, plan it, and run it in a kinematic simulation
@@ -127,6 +127,7 @@ fn options(args: &Run, session: &Session) -> Outcome<ManipulationOptions> {
         let wrong = |error: &dyn std::fmt::Display| Failure::Input(format!("{}: {error}", path.display()));
         let text = std::fs::read_to_string(path).map_err(|error| wrong(&error))?;
         options = options.with_document(&text).map_err(|error| wrong(&error))?;
+        warn_of_unknown_keys(path, &text, &options);
     }
     if let Some(path) = &args.write_options {
         write_whole(path, (options.document() + "\n").as_bytes())?;

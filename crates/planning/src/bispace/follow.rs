@@ -12,7 +12,7 @@ use crate::space::Space;
 
 /// Parameters of following.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct FollowOptions {
     /// Steps after which it ends.
     pub steps: u32,

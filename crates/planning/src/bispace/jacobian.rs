@@ -12,7 +12,7 @@ use crate::edge::EdgeChecker;
 
 /// Parameters of the search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct JacobianOptions {
     /// Longest edge of the tree, as a fraction of the diameter of the space.
     pub step: f64,

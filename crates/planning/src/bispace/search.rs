@@ -16,7 +16,7 @@ use crate::subspace::Subspace;
 
 /// Parameters of the search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct BiSpaceOptions {
     /// Extensions of the tree of configurations in a round (J).
     pub forward: u32,

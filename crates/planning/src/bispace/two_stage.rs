@@ -12,7 +12,7 @@ use crate::rrt::{RrtConnect, RrtFailureReason, RrtOptions};
 
 /// Parameters of the two stages.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct TwoStageOptions {
     /// Goal configurations to find before the search begins; it uses all of them.
     pub goals: u32,

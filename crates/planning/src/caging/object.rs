@@ -32,7 +32,7 @@ pub enum WaySearch {
 
 /// Parameters of a caging task.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct CagedObjectOptions {
     /// Farthest two grasps are apart between which the gripper changes in one motion, metres.
     pub shift: f64,

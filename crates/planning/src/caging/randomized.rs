@@ -19,7 +19,7 @@ const TRIES: usize = 3;
 
 /// Parameters of the search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct RandomizedOptions {
     /// New states drawn from a state before the next best one is looked at.
     pub children: u32,

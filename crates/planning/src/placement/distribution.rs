@@ -42,7 +42,7 @@ impl BaseDistribution for UniformBases {
 
 /// Parameters of [`InverseSamples`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct InverseSamplesOptions {
     /// Configurations drawn of each arm.
     pub count: usize,

@@ -67,7 +67,7 @@ impl PrismBodies<'_> {
 
 /// Parameters of [`NavigationPosture`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct PostureOptions {
     /// Radius of the first ball around the preset posture, in the unit of [`EdgeChecker::travel`].
     pub smallest: f64,

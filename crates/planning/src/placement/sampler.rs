@@ -38,7 +38,7 @@ pub trait PlacementProblem {
 
 /// Parameters of the sampling.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct PlacementOptions {
     /// Places tried for each draw; what is not found by then is pending.
     pub places: u32,

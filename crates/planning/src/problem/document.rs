@@ -21,9 +21,8 @@ pub const VERSION: u32 = 1;
 /// Most searches that race for a problem.
 pub const MOST_RACERS: u32 = 64;
 
-/// A problem of free motion, as JSON. Unknown keys are errors; keys with a default may be left out.
+/// A problem of free motion, as JSON. Unknown keys are ignored, and [known](super::unknown_keys) on request; keys with a default may be left out.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct PlanningProblem {
     /// Version of the document: [`VERSION`].
     pub version: u32,
@@ -40,10 +39,10 @@ pub struct PlanningProblem {
     #[serde(default)]
     pub goals: Vec<Vec<f64>>,
     /// `world_from_tool`: goals of which inverse kinematics finds the configurations. Needs an arm.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub tool_goals: Vec<PoseDocument>,
     /// What differs from the start of the task. Needs a task.
-    #[serde(default, skip_serializing_if = "SituationDocument::is_empty")]
+    #[serde(default)]
     pub situation: SituationDocument,
     /// A condition on every state of the path.
     #[serde(default)]
@@ -107,10 +106,9 @@ fn default_post() -> Vec<Smoother> {
 
 /// A coordinate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct AxisDocument {
     /// Smallest and largest value; left out, the coordinate wraps at a whole turn.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub bounds: Option<[f64; 2]>,
     /// Factor of the coordinate in the metric.
     #[serde(default = "default_weight")]
@@ -123,7 +121,6 @@ fn default_weight() -> f64 {
 
 /// A pose: a point and a quaternion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct PoseDocument {
     /// x, y, z; metres.
     pub position: [f64; 3],
@@ -154,7 +151,7 @@ impl PoseDocument {
 
 /// A path constraint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub enum ConstraintDocument {
     /// [`Upright`].
     Upright {
@@ -191,7 +188,6 @@ pub enum ConstraintDocument {
 
 /// A door or a drawer.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct MechanismDocument {
     /// z is the axis.
     pub world_from_axis: PoseDocument,

@@ -11,6 +11,7 @@ mod situation;
 mod solve;
 #[cfg(test)]
 mod tests;
+mod unknown;
 
 pub use document::{
     AxisDocument, ConstraintDocument, MOST_RACERS, MechanismDocument, PlanningProblem, PoseDocument,
@@ -21,3 +22,4 @@ pub use registry::{
 };
 pub use situation::{HeldDocument, SituationDocument};
 pub use solve::{SolveFailure, Solved, solve, solve_racer};
+pub use unknown::{UnknownKey, unknown_keys};

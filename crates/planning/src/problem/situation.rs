@@ -8,7 +8,7 @@ use super::document::PoseDocument;
 
 /// Where things are, and what is held: what differs from the start of the task that a problem belongs to.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct SituationDocument {
     /// Values of joints that are not planned for, by name: fingers, a torso. Radians or metres.
     pub joints: BTreeMap<String, f64>,
@@ -20,16 +20,8 @@ pub struct SituationDocument {
     pub held: Option<HeldDocument>,
 }
 
-impl SituationDocument {
-    /// Whether nothing differs.
-    pub fn is_empty(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
 /// An object in the gripper. The links of the gripper may touch it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct HeldDocument {
     /// Its name.
     pub object: String,

@@ -58,9 +58,7 @@ fn wrong_documents_are_refused_with_the_place() {
     };
     for (from, to, message) in [
         ("\"version\": 1", "\"version\": 7", "the problem has version 7; this library reads version 1"),
-        ("\"planner\"", "\"planer\"", "unknown field `planer`"),
         ("\"step\": 0.1", "\"step\": 0.0", "search.step is 0, expected more than 0"),
-        ("\"step\": 0.1", "\"steps\": 0.1", "unknown field `steps`"),
         ("\"weight\": 1.0", "\"weight\": -1.0", "axes[0].weight is -1, expected more than 0"),
         ("\"local\": 0.3", "\"local\": 1.5", "search.local is 1.5, expected from 0 to 1"),
         ("\"resolution\": 0.01", "\"resolution\": -0.01", "resolution is -0.01, expected more than 0"),
@@ -74,6 +72,32 @@ fn wrong_documents_are_refused_with_the_place() {
     short.goals[0].pop();
     assert_eq!(short.check().unwrap_err().to_string(), "goals[0] has 1 coordinates, there are 2 axes");
     assert!(PlanningProblem::read("{").unwrap_err().to_string().contains("line 1"));
+}
+
+#[test]
+fn unknown_keys_are_ignored_but_not_unseen() {
+    let text = problem().write();
+    let problem = PlanningProblem::read(&text).unwrap();
+    assert_eq!(unknown_keys(&text, &problem), []);
+    let newer = text
+        .replacen("\"planner\"", "\"planer\"", 1)
+        .replacen("\"step\": 0.1", "\"steps\": 0.1, \"heuristic\": {\"name\": \"manhattan\"}", 1)
+        .replacen("\"weight\": 1.0", "\"wait\": 2, \"weight\": 1.0", 1);
+    let read = PlanningProblem::read(&newer).unwrap();
+    assert_eq!(
+        (read.planner.as_str(), read.search.step),
+        ("rrt_connect", crate::rrt::RrtOptions::default().step)
+    );
+    let found: Vec<String> = unknown_keys(&newer, &read).iter().map(ToString::to_string).collect();
+    assert_eq!(
+        found,
+        [
+            "`axes.0.wait` is not known, and ignored",
+            "`planer` is not known, and ignored; did you mean `planner`?",
+            "`search.heuristic` is not known, and ignored",
+            "`search.steps` is not known, and ignored; did you mean `step`?",
+        ]
+    );
 }
 
 #[test]

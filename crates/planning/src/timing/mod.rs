@@ -43,7 +43,7 @@ pub enum TimeLaw {
 
 /// Parameters of the time parameterisation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct TimingOptions {
     /// How the path is driven.
     pub law: TimeLaw,
