@@ -27,7 +27,6 @@ const TASKS: &[(&str, &[&str])] = &[
         &["reachability.step=0.3", "grasp_set.approaches=500", "caging_set.approaches=300"],
     ),
     ("specs/tasks/mug_to_shelf_wam.task.toml", &["reachability.step=0.3", "grasp_set.approaches=500"]),
-    ("specs/tasks/parts_to_bin_ur5e.task.toml", &["reachability.step=0.3", "grasp_set.approaches=500"]),
 ];
 
 /// Builds both programs unless they are given, compiles with both, and compares.
