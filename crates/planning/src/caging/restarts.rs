@@ -38,31 +38,20 @@ pub fn restarted_search<T: ArticulatedTask + ?Sized>(
     // What is in contact may be kept to the end.
     grasps.sort_by_key(|&grasp| !task.is_contact(grasp));
     let mut starts: Vec<CagedState> = Vec::new();
-    let mut all = CagingStatistics::default();
-    let mut partial: Vec<CagedState> = Vec::new();
-    let fail = |reason, partial, statistics| Err(CagingFailure { reason, partial, statistics });
+    let mut tried = Tried::default();
     for &grasp in &grasps {
-        if !task.is_contact(grasp) || f64::from(all.motions) > KEPT * f64::from(options.max_draws) {
+        if !task.is_contact(grasp)
+            || f64::from(tried.statistics.motions) > KEPT * f64::from(options.max_draws)
+        {
             break;
         }
-        match discrete_search(&mut FixedGrasp::one(task, grasp), budget) {
-            Ok(solution) => return Ok(solution),
-            Err(failure) => {
-                all.add(&failure.statistics);
-                if matches!(failure.reason, CagingFailureReason::Interrupted(_)) {
-                    return fail(failure.reason, partial, all);
-                }
-            }
+        if let Some(end) = tried.by(discrete_search(&mut FixedGrasp::one(task, grasp), budget)) {
+            return end;
         }
     }
-    match discrete_search_within(task, (EXHAUSTIVE * f64::from(options.max_draws)) as u32, budget) {
-        Ok(solution) => return Ok(solution),
-        Err(failure) => {
-            all.add(&failure.statistics);
-            if matches!(failure.reason, CagingFailureReason::Interrupted(_)) {
-                return fail(failure.reason, partial, all);
-            }
-        }
+    let most = (EXHAUSTIVE * f64::from(options.max_draws)) as u32;
+    if let Some(end) = tried.by(discrete_search_within(task, most, budget)) {
+        return end;
     }
     for (round, share) in ROUNDS.into_iter().enumerate() {
         let max_draws = (share * f64::from(options.max_draws)).ceil() as u32;
@@ -76,11 +65,11 @@ pub fn restarted_search<T: ArticulatedTask + ?Sized>(
                 }
                 let Some(&grasp) = next_grasp.next() else { break };
                 if let Err(interrupt) = budget.check() {
-                    return fail(CagingFailureReason::Interrupted(interrupt), partial, all);
+                    return tried.ended(CagingFailureReason::Interrupted(interrupt));
                 }
-                all.inverse_calls += 1;
+                tried.statistics.inverse_calls += 1;
                 let mut found = task.candidates(0, grasp, None);
-                all.states += found.len() as u32;
+                tried.statistics.states += found.len() as u32;
                 rng.shuffle(&mut found);
                 let found = found.into_iter().map(|q| CagedState { step: 0, grasp, q });
                 starts.extend(found.filter(|state| task.free(state).is_ok()).take(STARTS));
@@ -89,22 +78,44 @@ pub fn restarted_search<T: ArticulatedTask + ?Sized>(
             let from = CageStart::State(starts[number].clone());
             let mut rng = seed.split("search").at(number as u64).at(round as u64).rng();
             number += 1;
-            match randomized_search(task, &from, &options, budget, &mut rng) {
-                Ok(solution) => return Ok(solution),
-                Err(failure) => {
-                    all.add(&failure.statistics);
-                    if failure.partial.len() > partial.len() {
-                        partial = failure.partial;
-                    }
-                    if matches!(failure.reason, CagingFailureReason::Interrupted(_)) {
-                        return fail(failure.reason, partial, all);
-                    }
-                }
+            if let Some(end) = tried.by(randomized_search(task, &from, &options, budget, &mut rng)) {
+                return end;
             }
         }
         if starts.is_empty() {
-            return fail(CagingFailureReason::OutOfReach { step: 0 }, partial, all);
+            return tried.ended(CagingFailureReason::OutOfReach { step: 0 });
         }
     }
-    fail(CagingFailureReason::Iterations, partial, all)
+    tried.ended(CagingFailureReason::Iterations)
+}
+
+/// What searches did so far that found no way.
+#[derive(Default)]
+struct Tried {
+    statistics: CagingStatistics,
+    /// The longest way that one of them got.
+    partial: Vec<CagedState>,
+}
+
+impl Tried {
+    /// Counts one more search; its outcome, if that is the end: a way was found, or nobody wants one any more.
+    fn by(
+        &mut self,
+        outcome: Result<CagingSolution, CagingFailure>,
+    ) -> Option<Result<CagingSolution, CagingFailure>> {
+        let failure = match outcome {
+            Ok(solution) => return Some(Ok(solution)),
+            Err(failure) => failure,
+        };
+        self.statistics.add(&failure.statistics);
+        if failure.partial.len() > self.partial.len() {
+            self.partial = failure.partial;
+        }
+        let interrupted = matches!(failure.reason, CagingFailureReason::Interrupted(_));
+        interrupted.then(|| std::mem::take(self).ended(failure.reason))
+    }
+
+    fn ended(self, reason: CagingFailureReason) -> Result<CagingSolution, CagingFailure> {
+        Err(CagingFailure { reason, partial: self.partial, statistics: self.statistics })
+    }
 }

@@ -79,8 +79,16 @@ impl Manipulation<'_> {
     }
 }
 
-/// Searches for a way of a door or a drawer from one of many places get this part of the draws.
-const SHARE: u32 = 10;
+/// Shares of the draws that searches for a way of a door or a drawer get at each place, stage by stage: what can be opened from a place
+/// is mostly opened soon, and another place is worth more than a long search from one that is no good.
+const STAGES: [f64; 3] = [0.002, 0.02, 0.1];
+
+/// A place to stand, and how the base gets there.
+struct Place {
+    path: Vec<Vec<f64>>,
+    stands: Configuration,
+    seed: Seed,
+}
 
 /// Plans a goal that cannot be reached from where the robot stands: folds the arm, drives to one place after the other from which
 /// `targets` are within reach, and does `there` what is to be done, which gets the situation at that place. `missed` says why it
@@ -101,8 +109,6 @@ pub(super) fn plan_driving(
     let fold = fold(cx, scene, q, &drive, budget, seed.split("fold"))?;
     let mut folded = q.clone();
     folded.set(cx.problem.arm.dofs(), &fold[fold.len() - 1]);
-    let mut quick = cx.options.clone();
-    quick.caging_search.max_draws /= SHARE;
     let arms = [PlacementArm { cost: 1.0, grasps: targets.grasps.clone() }];
     let (hands, rng) = (&targets.hands, seed.split("free").rng());
     let mut standing = Standing { cx, scene, hands, drive: &drive, folded: &folded, rng };
@@ -110,39 +116,56 @@ pub(super) fn plan_driving(
     let options = PlacementOptions { places: 20, max_places: 4000 };
     let mut places = BasePlacement::new(&mut standing, &mut bases, &arms, options, seed.split("places"));
     let mut last = missed;
+    // Only searches for a way of an article are long or short.
+    let stages = if matches!(cx.goal(), Goal::Open { .. }) { &STAGES[..] } else { &STAGES[..1] };
+    let mut known: Vec<Place> = Vec::new();
     let mut tried = 0;
-    while tried < PLACES {
-        match places.draw(budget) {
-            Err(interrupt) => {
-                last.interrupt = Some(interrupt);
-                return Err(last);
-            }
-            Ok(GoalDraw::Pending) => continue,
-            Ok(GoalDraw::Exhausted) => break,
-            Ok(GoalDraw::Goal(_)) => tried += 1,
-        }
-        let Some(base) = places.placements.last().map(|placement| placement.base) else { break };
-        let seed = seed.split("place").at(tried);
-        let Some(path) = drive_to(cx, scene, &drive, &folded, &base, budget, seed) else {
-            last.message = "no way to drive to where it can be reached from".into();
-            continue;
-        };
-        let mut stands = folded.clone();
-        stands.set(&drive.dofs, &path[path.len() - 1]);
-        let arm = cx.problem.arm_at(&stands);
-        let here = GoalContext { problem: Manipulation { arm: &arm, ..cx.problem }, options: &quick, ..*cx };
-        match there(&here, &stands, seed) {
-            Ok(reached) => {
-                let mut made = Maker::new(cx, q);
-                if fold.len() > 1 {
-                    made.arm(SegmentKind::Fold, &fold, scene, start_rules(cx, scene, q, &fold[0]), None);
+    for (stage, share) in stages.iter().enumerate() {
+        let mut options = cx.options.clone();
+        options.caging_search.max_draws = (share * f64::from(options.caging_search.max_draws)).ceil() as u32;
+        let mut number = 0;
+        loop {
+            if number == known.len() {
+                if stage > 0 || tried == PLACES {
+                    break;
                 }
-                made.drive(&drive, &path, scene);
-                let segments = made.segments.into_iter().chain(reached.segments).collect();
-                return Ok(Reached { segments, ..reached });
+                match places.draw(budget) {
+                    Err(interrupt) => {
+                        last.interrupt = Some(interrupt);
+                        return Err(last);
+                    }
+                    Ok(GoalDraw::Pending) => continue,
+                    Ok(GoalDraw::Exhausted) => break,
+                    Ok(GoalDraw::Goal(_)) => tried += 1,
+                }
+                let Some(base) = places.placements.last().map(|placement| placement.base) else { break };
+                let seed = seed.split("place").at(tried);
+                let Some(path) = drive_to(cx, scene, &drive, &folded, &base, budget, seed) else {
+                    last.message = "no way to drive to where it can be reached from".into();
+                    continue;
+                };
+                let mut stands = folded.clone();
+                stands.set(&drive.dofs, &path[path.len() - 1]);
+                known.push(Place { path, stands, seed });
             }
-            Err(failure) if failure.interrupt.is_some() => return Err(failure),
-            Err(failure) => last = failure,
+            let Place { path, stands, seed } = &known[number];
+            number += 1;
+            let arm = cx.problem.arm_at(stands);
+            let here =
+                GoalContext { problem: Manipulation { arm: &arm, ..cx.problem }, options: &options, ..*cx };
+            match there(&here, stands, seed.split("stage").at(stage as u64)) {
+                Ok(reached) => {
+                    let mut made = Maker::new(cx, q);
+                    if fold.len() > 1 {
+                        made.arm(SegmentKind::Fold, &fold, scene, start_rules(cx, scene, q, &fold[0]), None);
+                    }
+                    made.drive(&drive, path, scene);
+                    let segments = made.segments.into_iter().chain(reached.segments).collect();
+                    return Ok(Reached { segments, ..reached });
+                }
+                Err(failure) if failure.interrupt.is_some() => return Err(failure),
+                Err(failure) => last = failure,
+            }
         }
     }
     last.message = format!("{}; {tried} places to stand were tried: {}", last.message, places.rejections);
