@@ -39,6 +39,7 @@ fn heights(geometry: &Geometry, points: &[Point3<f64>]) -> Vec<f64> {
             let part = ConvexPart::hull_of(&mesh.vertices).expect(uri);
             local.map(|p| part.height(&p)).collect()
         }
+        Shape::Cloud { .. } | Shape::HeightField { .. } => unreachable!("links are not measured"),
     }
 }
 
@@ -94,7 +95,9 @@ pub(crate) fn corners(geometry: &Geometry) -> Vec<Point3<f64>> {
                 Point3::new(radius * angle.cos(), radius * angle.sin(), sign(i, 0) * length / 2.0)
             })
             .collect(),
-        Shape::Capsule { .. } | Shape::Sphere { .. } => Vec::new(),
+        Shape::Capsule { .. } | Shape::Sphere { .. } | Shape::Cloud { .. } | Shape::HeightField { .. } => {
+            Vec::new()
+        }
     };
     local.iter().map(|p| pose * p).collect()
 }

@@ -28,18 +28,36 @@ fn specifications_load_without_a_finding() {
     tasks.iter().for_each(|path| drop(load_task(path)));
 }
 
-/// Shapes as convex parts with their poses; a mesh as its hull.
+/// Shapes as convex parts with their poses; a mesh as its hull, a height field as all of its prisms.
 type Parts = Vec<(ConvexPart, Pose)>;
 
+/// Everything below the triangles of a height field.
+fn prisms(field: &geom::HeightField) -> impl Iterator<Item = ConvexPart> {
+    let cells =
+        (0..field.rows() - 1).flat_map(|row| (0..field.columns() - 1).map(move |column| (row, column)));
+    let triangles = cells.flat_map(|(row, column)| field.triangles(row, column)).flatten();
+    triangles.map(|top| {
+        let corners = top.iter().flat_map(|p| [*p, nalgebra::Point3::new(p.x, p.y, field.floor())]);
+        ConvexPart::hull_of(&corners.collect::<Vec<_>>()).expect("finite")
+    })
+}
+
 fn parts(shapes: &[Geometry]) -> Parts {
-    let part = |geometry: &Geometry| match &geometry.shape {
-        Shape::Box { size } => geom::box_part((*size).into()),
-        Shape::Cylinder { radius, length } => geom::cylinder_part(*radius, *length),
-        Shape::Capsule { radius, length } => geom::capsule_part(*radius, *length),
-        Shape::Sphere { radius } => geom::sphere_part(*radius),
-        Shape::Mesh { mesh, uri } => ConvexPart::hull_of(&mesh.vertices).expect(uri),
+    let parts = |geometry: &Geometry| match &geometry.shape {
+        Shape::Box { size } => vec![geom::box_part((*size).into())],
+        Shape::Cylinder { radius, length } => vec![geom::cylinder_part(*radius, *length)],
+        Shape::Capsule { radius, length } => vec![geom::capsule_part(*radius, *length)],
+        Shape::Sphere { radius } => vec![geom::sphere_part(*radius)],
+        Shape::Mesh { mesh, uri } => vec![ConvexPart::hull_of(&mesh.vertices).expect(uri)],
+        Shape::HeightField { field, .. } => prisms(field).collect(),
+        Shape::Cloud { cloud, .. } => {
+            let ball = geom::sphere_part(cloud.radius());
+            cloud.points().iter().map(|p| ball.transformed(&Pose::from(p.coords))).collect()
+        }
     };
-    shapes.iter().map(|shape| (part(shape), shape.origin.pose())).collect()
+    let each =
+        shapes.iter().flat_map(|shape| parts(shape).into_iter().map(|part| (part, shape.origin.pose())));
+    each.collect()
 }
 
 /// The distance of two things, each in its own frame.
@@ -57,8 +75,9 @@ fn distance(a: &Parts, world_from_a: &Pose, b: &Parts, world_from_b: &Pose) -> f
 /// The things of a task: name, parts, pose in the world. Objects first, then obstacles; how many objects.
 fn things(task: &Task) -> (Vec<(&str, Parts, Pose)>, usize) {
     let objects = task.objects.iter().map(|o| (o.name.as_str(), parts(&o.geometry), o.world_from_object));
-    let obstacles =
-        task.obstacles.iter().map(|o| (o.name.as_str(), parts(&o.geometry), o.world_from_obstacle));
+    // What may have points of the robot's own is looked at when a session is opened.
+    let complete = task.obstacles.iter().filter(|o| o.without_robot.is_none());
+    let obstacles = complete.map(|o| (o.name.as_str(), parts(&o.geometry), o.world_from_obstacle));
     (objects.chain(obstacles).collect(), task.objects.len())
 }
 
