@@ -150,7 +150,6 @@ fn no_cut_makes_a_reader_panic() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
     #[test]
     fn no_change_makes_a_reader_panic(
         pick in 0..16_usize,
