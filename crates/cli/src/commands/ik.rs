@@ -60,7 +60,7 @@ pub(crate) struct Ik {
     /// Let Rust use the square root of std: faster
     #[arg(long)]
     std: bool,
-    /// Let the source find every branch of a calibrated arm too, whose constants it is given at run time: some 40 KB more
+    /// Let the source find every branch of a calibrated arm too, whose constants it is given at run time: some 50 KB more
     #[arg(long, requires = "output")]
     calibrated: bool,
     /// File for the proof

@@ -16,7 +16,7 @@ pub struct RustOptions {
     /// Use the square root of `std` instead of the file's own: faster, but then the file needs `std`.
     pub std: bool,
     /// Let `solve_on` ask the general solver of six joints besides, which finds all branches of a calibrated arm; the file is larger by
-    /// some 40 KB. Without it branches are tracked from those of the described arm, and some near its folds are lost. Nothing changes for
+    /// some 50 KB. Without it branches are tracked from those of the described arm, and some near its folds are lost. Nothing changes for
     /// arms without six turning joints whose values are not given.
     pub calibrated: bool,
 }
