@@ -8,7 +8,7 @@ use robotc_core::rng::Rng;
 
 use crate::kernel::math::cos_sin;
 use crate::kernel::six::{MOST_ORDERS, ORDERS, Order, six, waves_of};
-use crate::kernel::vector::{Line, Motion};
+use crate::kernel::vector::{Line, Motion, plus, times};
 use crate::kernel::waves::{MAX_DEGREE, Waves};
 
 /// Waves below this part of the largest are rounding.
@@ -17,9 +17,8 @@ const ROUNDING: f64 = 1e-8;
 /// The orders that find random joint vectors again, best first: those that miss fewest, then those of the lowest degree, then
 /// the most exact. Orders after the first are only asked where it fails, so they differ in the angle that is found first.
 ///
-/// `axes` are those of the six joints with all turns zero; a seventh, given one turns the later ones, after so many of the six. Orders
-/// are compared on so many `poses`.
-pub(crate) fn orders(axes: &[Line; 6], given: Option<(usize, Line)>, poses: usize) -> Vec<Order> {
+/// `axes` are those of the six joints with all turns zero; `given` ones move the later ones. Orders are compared on so many `poses`.
+pub(crate) fn orders(axes: &[Line; 6], given: &[Known], poses: usize) -> Vec<Order> {
     let mut rng = Seed::new(0).split("ikgen orders").rng();
     let trials: Vec<Trial> = (0..poses).map(|_| trial(axes, given, &mut rng)).collect();
     let mut ranked: Vec<(usize, usize, f64, Order)> = Vec::new();
@@ -56,6 +55,24 @@ pub(crate) fn orders(axes: &[Line; 6], given: Option<(usize, Line)>, poses: usiz
     chosen
 }
 
+/// A given joint between those that are found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Known {
+    /// How many of the six come before it.
+    pub(crate) before: usize,
+    /// Its axis.
+    pub(crate) line: Line,
+    /// Whether it slides along that.
+    pub(crate) slides: bool,
+}
+
+impl From<(usize, Line)> for Known {
+    /// A turn after so many of the six.
+    fn from((before, line): (usize, Line)) -> Self {
+        Self { before, line, slides: false }
+    }
+}
+
 /// A random joint vector, and the loop that it closes.
 struct Trial {
     lines: [Line; 6],
@@ -63,13 +80,17 @@ struct Trial {
     turns: [[f64; 2]; 6],
 }
 
-fn trial(axes: &[Line; 6], given: Option<(usize, Line)>, rng: &mut Rng) -> Trial {
+fn trial(axes: &[Line; 6], given: &[Known], rng: &mut Rng) -> Trial {
     let mut turn = || cos_sin(rng.range(-std::f64::consts::PI, std::f64::consts::PI));
     let mut lines = *axes;
-    if let Some((before, axis)) = given {
+    for known in given.iter().rev() {
         let turn = turn();
-        for later in &mut lines[before..] {
-            *later = axis.moved(later, turn);
+        for later in &mut lines[known.before..] {
+            if known.slides {
+                later.point = plus(later.point, times(known.line.direction, turn[1]));
+            } else {
+                *later = known.line.moved(later, turn);
+            }
         }
     }
     let turns: [[f64; 2]; 6] = std::array::from_fn(|_| turn());

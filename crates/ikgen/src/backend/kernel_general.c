@@ -1370,9 +1370,9 @@ static double ik_slope_of_piece(const ik_piece *piece, double x)
     return sum / piece->half;
 }
 
-/* Places and imaginary parts of the roots on the interval, or as near to it as `margin`: eigenvalues of the colleague matrix (Good, 1961;
-   Boyd, 2002). Returns how many there are. */
-static int ik_roots_of_piece(const ik_piece *piece, double margin, double found[IK_SIZE][2])
+/* Places and imaginary parts of the roots on the interval, or as near to it as `margin`, with imaginary parts up to `height`: eigenvalues of
+   the colleague matrix (Good, 1961; Boyd, 2002). Returns how many there are. */
+static int ik_roots_of_piece(const ik_piece *piece, double margin, double height, double found[IK_SIZE][2])
 {
     double colleague[IK_SIZE][IK_SIZE] = { { 0.0 } }, values[IK_SIZE][2], others = 0.0, least, last, base, power = 1.0, x, y;
     int k, count, kept = 0;
@@ -1395,7 +1395,7 @@ static int ik_roots_of_piece(const ik_piece *piece, double margin, double found[
     for (k = 0; k < count; k++) {
         x = piece->half * values[k][0];
         y = piece->half * values[k][1];
-        if (ik_abs(x) <= piece->half + margin && ik_abs(y) <= margin) {
+        if (ik_abs(x) <= piece->half + margin && ik_abs(y) <= height) {
             found[kept][0] = piece->centre + x;
             found[kept][1] = y;
             kept++;
@@ -1556,6 +1556,15 @@ static double ik_swept_value(const ik_swept *swept, double x, int code)
     return volume * (sign * factor * pivots);
 }
 
+/* The determinant on an interval of this width from `start` on. */
+static void ik_piece_at(const ik_swept *swept, int code, const double table[4 * IK_NODES], double start, double width, ik_piece *piece)
+{
+    double samples[IK_NODES], half = 0.5 * width, centre = start + half;
+    int k;
+    for (k = 0; k < IK_NODES; k++) samples[k] = ik_swept_value(swept, centre + half * table[2 * k + 1], code);
+    ik_piece_of(table, start, width, samples, piece);
+}
+
 /* Adds a candidate: the turns of the five in their order, then the swept variable. */
 static void ik_add_swept(const ik_loop *loop, const ik_turn pair[2], double x, int is_turn, ik_candidates *found)
 {
@@ -1573,21 +1582,39 @@ static void ik_add_swept(const ik_loop *loop, const ik_turn pair[2], double x, i
     ik_add_turns(placed, found);
 }
 
-/* Adds the candidates of one interval; says whether its roots lie apart. */
-static int ik_look_at_piece(const ik_swept *swept, int code, const ik_piece *piece, double slack, ik_candidates *found)
+/* Adds the candidates of one interval; says whether its roots lie apart. They may be so far from real ones. */
+static int ik_look_at_piece(const ik_swept *swept, int code, const double *table, const ik_piece *piece, double unreal, int zooms, ik_candidates *found)
 {
-    double roots[IK_SIZE][2];
-    int count = ik_roots_of_piece(piece, IK_NEARLY_REAL + 5.0 * ik_sqrt(slack), roots), done[IK_SIZE] = { 0 }, near[IK_SIZE];
-    int apart = 1, together, pairs_found, i, j, k;
+    double roots[IK_SIZE][2], tight = 0.05 * piece->half, margin = IK_NEARLY_REAL + unreal;
+    int count = ik_roots_of_piece(piece, margin, tight > margin ? tight : margin, roots), done[IK_SIZE] = { 0 }, near[IK_SIZE];
+    int apart = 1, together, pairs_found, all, i, j;
     ik_turn still = ik_turn_of(1.0, 0.0), pairs[6][2];
     ik_loop loop;
     ik_six_rows six;
+    /* Where the five others lose a freedom at some value, whatever the goal, the determinant has a root of a high order there, which hides
+       others beside it: it is looked at alone. */
     for (i = 0; i < count; i++) {
-        double x = roots[i][0], imaginary = roots[i][1], sum = 0.0, mean, change;
-        if (done[i]) continue;
+        double centre = 0.0, width = 2.0 * (1.0 / 16.0) * piece->half;
+        ik_piece inner;
         together = 0;
         for (j = 0; j < count; j++) {
-            near[j] = ik_abs(roots[j][0] - x) + ik_abs(roots[j][1] - imaginary) < 3e-3;
+            near[j] = ik_abs(roots[j][0] - roots[i][0]) + ik_abs(roots[j][1] - roots[i][1]) < tight;
+            if (!done[j] && near[j]) {
+                together++;
+                centre += roots[j][0];
+            }
+        }
+        if (done[i] || together < 3 || zooms == 0) continue;
+        for (j = 0; j < count; j++) done[j] |= near[j];
+        ik_piece_at(swept, code, table, centre / (double)together - 0.5 * width, width, &inner);
+        apart &= ik_look_at_piece(swept, code, table, &inner, unreal, zooms - 1, found);
+    }
+    for (i = 0; i < count; i++) {
+        double x = roots[i][0], imaginary = roots[i][1], sum = 0.0, mean, change;
+        if (done[i] || ik_abs(imaginary) > margin) continue;
+        together = 0;
+        for (j = 0; j < count; j++) {
+            near[j] = !done[j] && ik_abs(roots[j][0] - x) + ik_abs(roots[j][1] - imaginary) < 3e-3;
             if (near[j]) {
                 together++;
                 sum += roots[j][0];
@@ -1597,9 +1624,9 @@ static int ik_look_at_piece(const ik_swept *swept, int code, const ik_piece *pie
             /* Several solutions that share the value, or nearly do. */
             mean = sum / (double)together;
             ik_swept_at(swept, mean, code, &loop, &six);
-            j = ik_several(&six, still, pairs, &pairs_found);
-            for (k = 0; k < pairs_found; k++) ik_add_swept(&loop, pairs[k], mean, swept->turns, found);
-            if (j == together) {
+            all = ik_several(&six, still, pairs, &pairs_found) == together;
+            for (j = 0; j < pairs_found; j++) ik_add_swept(&loop, pairs[j], mean, swept->turns, found);
+            if (all) {
                 for (j = 0; j < count; j++) done[j] |= near[j];
                 continue;
             }
@@ -1623,9 +1650,9 @@ static int ik_look_at_piece(const ik_swept *swept, int code, const ik_piece *pie
 /* Adds the candidates of one order; says whether they are all that there are. */
 static int ik_sweep_order(ik_swept *swept, int code, double low, double high, double slack, ik_candidates *found)
 {
-    double table[4 * IK_NODES], samples[IK_NODES], whole = high - low, at = low, width = whole / 16.0, before = 1.7976931348623157e308, rest;
+    double table[4 * IK_NODES], whole = high - low, at = low, width = whole / 16.0, before = 1.7976931348623157e308, rest;
     ik_piece piece;
-    int all = 1, resolved, round, k;
+    int all = 1, resolved, round;
     ik_cosines(table);
     swept->is_constant = swept->before == ik_still_joint(code);
     if (swept->is_constant) {
@@ -1633,9 +1660,7 @@ static int ik_sweep_order(ik_swept *swept, int code, double low, double high, do
         ik_shadow_of(loop.lines, &loop.goal, swept->origin, swept->scale, &swept->shadow);
     }
     for (round = 0; round < 200; round++) {
-        double half = 0.5 * width, centre = at + half;
-        for (k = 0; k < IK_NODES; k++) samples[k] = ik_swept_value(swept, centre + half * table[2 * k + 1], code);
-        ik_piece_of(table, at, width, samples, &piece);
+        ik_piece_at(swept, code, table, at, width, &piece);
         rest = ik_rest_of_piece(&piece);
         resolved = rest < 1e-9 * piece.largest;
         /* Half an interval that is no better than the whole one shows rounding. */
@@ -1644,7 +1669,7 @@ static int ik_sweep_order(ik_swept *swept, int code, double low, double high, do
             width *= 0.5;
             continue;
         }
-        all &= ik_look_at_piece(swept, code, &piece, slack, found) && resolved;
+        all &= ik_look_at_piece(swept, code, table, &piece, 5.0 * ik_sqrt(slack), 4, found) && resolved;
         at += width;
         if (at > high - (1.0 / 16384.0) * whole) return all;
         before = 1.7976931348623157e308;

@@ -172,7 +172,11 @@ fn search(
     trace: &mut Trace<'_>,
 ) -> Result<(Program, String), String> {
     if chain.joints.len() > crate::kernel::chain::MAX_JOINTS {
-        return Err(format!("{} joints are too many", chain.joints.len()));
+        let most = crate::kernel::chain::MAX_JOINTS;
+        return Err(format!(
+            "{} joints, with those that the type adds, are more than {most}",
+            chain.joints.len()
+        ));
     }
     let mut letters = letters(own);
     let given = options.goal.given_variables(own.variables.len());
@@ -300,7 +304,7 @@ fn attempt(
         None
     };
     let Some(problem) = Problem::new(&facts, free) else {
-        trace.push(format!("free {free:?}: given joints in more than one place between unknown ones"));
+        trace.push(format!("free {free:?}: no joint is left to find"));
         return Err(None);
     };
     let mut failure = None;

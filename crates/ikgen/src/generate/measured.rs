@@ -5,7 +5,7 @@ use robotc_core::rng::Rng;
 
 use crate::kernel::six::Order;
 use crate::kernel::vector::{Line, cross, plus, times};
-use crate::orders::orders;
+use crate::orders::{Known, orders};
 use crate::run::{TrueChain, six_lines};
 
 /// Poses on which orders are compared.
@@ -22,7 +22,7 @@ pub(crate) fn orders_of_measured(chain: &TrueChain, held: &[bool]) -> Vec<Order>
     for line in axes.iter_mut().chain(given.as_mut().map(|(_, line)| line)) {
         *line = near(line, &mut rng);
     }
-    orders(&axes, given, POSES)
+    orders(&axes, given.map(Known::from).as_slice(), POSES)
 }
 
 fn near(line: &Line, rng: &mut Rng) -> Line {

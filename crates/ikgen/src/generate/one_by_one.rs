@@ -63,7 +63,9 @@ pub(super) fn write(facts: &Facts, free: &[usize], b: &Builder) -> Result<String
     let mut unknown: Vec<usize> = (0..variables).filter(|v| !free.contains(v)).collect();
     let mut order = Vec::new();
     while !unknown.is_empty() {
-        let Some((v, solution)) = next(axes, &candidates, &unknown, variables) else {
+        let found =
+            [true, false].into_iter().find_map(|steady| next(axes, &candidates, &unknown, variables, steady));
+        let Some((v, solution)) = found else {
             let numbers: Vec<String> = unknown.iter().map(|v| (v + 1).to_string()).collect();
             let left = left(axes, &candidates, &unknown, variables);
             return Err(format!("no equation holds only one of the joints {}; {left}", numbers.join(", ")));
@@ -115,11 +117,15 @@ fn left(axes: &[Axis], candidates: &[Equation], unknown: &[usize], variables: us
 }
 
 /// The best unknown to find next, and how.
+///
+/// An equation that holds at the right value of its unknown whatever the others are may still change with them at wrong values. Its
+/// coefficients then are those at zero of the others, where it may say nothing: `steady` leaves such equations out.
 fn next(
     axes: &[Axis],
     candidates: &[Equation],
     unknown: &[usize],
     variables: usize,
+    steady: bool,
 ) -> Option<(usize, Solution)> {
     let mut rng = Seed::new(0).split("ikgen equations").rng();
     let motion = |v: usize| axes.iter().find(|a| a.variable == v).map_or(ChainMotion::Revolute, |a| a.motion);
@@ -146,6 +152,10 @@ fn next(
         let simple = candidates.iter().filter(on_left).chain(candidates.iter().filter(|e| !on_left(e)));
         for e in simple.filter(holds) {
             let forms: Vec<[f64; 5]> = (0..SAMPLES).map(|s| form(&mixed(s, &|_| false), *v, e)).collect();
+            let elsewhere = || (0..SAMPLES).map(|s| form(&mixed(s, &|u| u != *v), *v, e)).collect::<Vec<_>>();
+            if steady && !same_form(&forms, &elsewhere()) {
+                continue;
+            }
             if singles.iter().all(|(_, other)| !same_form(other, &forms)) {
                 singles.push((*e, forms));
             }

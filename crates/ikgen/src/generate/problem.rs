@@ -17,8 +17,8 @@ pub(super) const OFF_ZERO: f64 = 1e-3;
 pub struct Problem {
     /// The unknown axes, in the order of the product.
     pub axes: Vec<Axis>,
-    /// A given motion between unknown ones: number of unknowns before it, and its axis.
-    pub given: Option<(usize, Axis)>,
+    /// Given motions between unknown ones: number of unknowns before each, and its axis; in the order of the product.
+    pub given: Vec<(usize, Axis)>,
     /// Given motions before and after all unknown ones.
     outer: (Vec<Axis>, Vec<Axis>),
     reversed: bool,
@@ -27,10 +27,10 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// The problem of a chain with these variables given; `None` when given joints are in more than one inner place.
+    /// The problem of a chain with these variables given; `None` when no joint is left to find.
     pub fn new(facts: &Facts, free: &[usize]) -> Option<Self> {
         let mut axes = Vec::new();
-        let mut given: Option<(usize, Axis)> = None;
+        let mut given = Vec::new();
         let mut outer = (Vec::new(), Vec::new());
         let is_free = |a: &Axis| free.contains(&a.variable);
         let last_unknown = facts.ideal.iter().rposition(|a| !is_free(a))?;
@@ -41,8 +41,8 @@ impl Problem {
                 outer.0.push(*axis);
             } else if i > last_unknown {
                 outer.1.push(*axis);
-            } else if given.replace((axes.len(), *axis)).is_some() {
-                return None;
+            } else {
+                given.push((axes.len(), *axis));
             }
         }
         Some(Self { axes, given, outer, reversed: false, facts: facts.clone(), free: free.to_vec() })
@@ -61,15 +61,25 @@ impl Problem {
     pub fn reversed(&self) -> Self {
         let mut turned = self.clone();
         turned.axes.reverse();
+        turned.given.reverse();
         let count = turned.axes.len();
-        for axis in turned.axes.iter_mut().chain(turned.given.as_mut().map(|(_, a)| a)) {
+        for axis in turned.axes.iter_mut().chain(turned.given.iter_mut().map(|(_, a)| a)) {
             axis.direction = -axis.direction;
         }
-        if let Some((before, _)) = &mut turned.given {
+        for (before, _) in &mut turned.given {
             *before = count - *before;
         }
         turned.reversed = !self.reversed;
         turned
+    }
+
+    /// The given motion between unknown ones, of which some strategies can have one.
+    pub fn one_given(&self) -> Result<Option<(usize, Axis)>, String> {
+        match self.given[..] {
+            [] => Ok(None),
+            [only] => Ok(Some(only)),
+            _ => Err("several given joints lie between the unknown ones".into()),
+        }
     }
 
     /// Tolerance of relations between axes.
@@ -81,7 +91,7 @@ impl Problem {
     pub fn snap(&self) -> f64 {
         let sign = if self.reversed { -1.0 } else { 1.0 };
         let mut ideal = self.facts.ideal.clone();
-        for axis in self.axes.iter().chain(self.given.as_ref().map(|(_, a)| a)) {
+        for axis in self.axes.iter().chain(self.given.iter().map(|(_, a)| a)) {
             // Added joints are not part of the description.
             let Some(same) = ideal.iter_mut().find(|a| a.variable == axis.variable) else { continue };
             *same = Axis { direction: axis.direction * sign, ..*axis };
@@ -121,7 +131,7 @@ impl Problem {
                 (None, Move::Slide(x)) => off_zero = off_zero + *x * *x,
             }
         }
-        let given = self.given.as_ref().map(|(_, a)| a);
+        let given = self.given.iter().map(|(_, a)| a);
         for axis in self.outer.0.iter().chain(&self.outer.1).chain(given) {
             all[axis.variable] = Some(self.move_of(b, axis));
         }

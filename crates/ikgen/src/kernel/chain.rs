@@ -3,7 +3,7 @@
 use super::math::{cos_sin, sqrt};
 
 /// Most joints of a chain.
-pub const MAX_JOINTS: usize = 12;
+pub const MAX_JOINTS: usize = 14;
 
 /// A solution is returned only when position (metres) and rotation (Frobenius norm) agree with the pose to this.
 pub const TOLERANCE: f64 = 1e-9;

@@ -30,7 +30,8 @@ pub struct Piece {
     /// Coefficients of Chebyshev's polynomials.
     a: [f64; NODES],
     centre: f64,
-    half: f64,
+    /// Half of the width.
+    pub half: f64,
     /// Largest coefficient in magnitude.
     pub largest: f64,
 }
@@ -73,8 +74,9 @@ impl Piece {
         sum / self.half
     }
 
-    /// Places and imaginary parts of the roots on the interval, or as near to it as `margin`; returns how many there are.
-    pub fn roots(&self, margin: f64, found: &mut [[f64; 2]; MAX_SIZE]) -> usize {
+    /// Places and imaginary parts of the roots on the interval, or as near to it as `margin`, with imaginary parts up to `height`; returns
+    /// how many there are.
+    pub fn roots(&self, margin: f64, height: f64, found: &mut [[f64; 2]; MAX_SIZE]) -> usize {
         let mut others = 0.0;
         for x in &self.a[1..] {
             others += x.abs();
@@ -102,7 +104,7 @@ impl Piece {
         let mut kept = 0;
         for [x, y] in &values[..count] {
             let [x, y] = [self.half * x, self.half * y];
-            if x.abs() <= self.half + margin && y.abs() <= margin {
+            if x.abs() <= self.half + margin && y.abs() <= height {
                 found[kept] = [self.centre + x, y];
                 kept += 1;
             }
@@ -128,14 +130,14 @@ mod tests {
             assert!(piece.rest() < 1e-9 * piece.largest);
             let h = 1e-6;
             assert!((piece.slope(0.7) - (value(0.7 + h) - value(0.7 - h)) / (2.0 * h)).abs() < 1e-8);
-            let count = piece.roots(1e-2, &mut found);
+            let count = piece.roots(1e-2, 1e-2, &mut found);
             for r in &roots {
                 let slope: f64 = roots.iter().filter(|s| *s != r).map(|s| (r - s).sin().abs()).product();
                 let near = found[..count].iter().map(|[x, y]| (x - r).abs() + y.abs()).fold(9.0, f64::min);
                 assert!(near < 1e-13 / slope || slope < 1e-9, "{near:e} {slope:e}");
             }
         }
-        assert_eq!(Piece::new(&table, 0.0, 1.0, |x| 2.0 + x).roots(1e-3, &mut found), 0);
+        assert_eq!(Piece::new(&table, 0.0, 1.0, |x| 2.0 + x).roots(1e-3, 1e-3, &mut found), 0);
         assert!(Piece::new(&table, 0.0, 1.0, |x| (60.0 * x).sin()).rest() > 0.1);
     }
 }

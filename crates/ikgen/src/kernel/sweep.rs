@@ -41,6 +41,16 @@ const RESOLVED: f64 = 1e-9;
 /// Half an interval has coefficients of rounding, if they are not smaller than this part of those of the whole one.
 const ROUNDING: f64 = 0.1;
 
+/// Roots that are nearer to each other than this part of half an interval, three or more, are looked at alone. Where the five others lose
+/// a freedom at some value, whatever the goal, the determinant has a root of a high order there, which hides others beside it.
+const CLUSTER: f64 = 0.05;
+
+/// The interval round them, as part of the one before.
+const ZOOM: f64 = 1.0 / 16.0;
+
+/// How many times.
+const ZOOMS: usize = 4;
+
 /// The circle is cut here: off the multiples of 90 degrees.
 const CUT: f64 = 0.2137;
 
@@ -147,7 +157,7 @@ fn solve(loop_: &Loop, code: usize, span: [f64; 2], turns: bool, slack: f64, fou
             width *= 0.5;
             continue;
         }
-        all &= look(&ordered, &piece, turns, slack, found) && resolved;
+        all &= look(&ordered, &table, &piece, turns, 5.0 * sqrt(slack), ZOOMS, found) && resolved;
         at += width;
         if at > span[1] - SHORTEST * whole {
             return all;
@@ -165,22 +175,51 @@ fn solve(loop_: &Loop, code: usize, span: [f64; 2], turns: bool, slack: f64, fou
     false
 }
 
-/// Adds the candidates of one interval; says whether its roots lie apart.
-fn look(ordered: &Ordered<'_>, piece: &Piece, turns: bool, slack: f64, found: &mut Candidates) -> bool {
+/// Adds the candidates of one interval; says whether its roots lie apart. They may be so far from real ones.
+fn look(
+    ordered: &Ordered<'_>,
+    table: &Cosines,
+    piece: &Piece,
+    turns: bool,
+    unreal: f64,
+    zooms: usize,
+    found: &mut Candidates,
+) -> bool {
     const STILL: [f64; 2] = [1.0, 0.0];
+    let tight = CLUSTER * piece.half;
+    let margin = NEARLY_REAL + unreal;
     let mut roots = [[0.0; 2]; MAX_SIZE];
-    let count = piece.roots(NEARLY_REAL + 5.0 * sqrt(slack), &mut roots);
+    let count = piece.roots(margin, if tight > margin { tight } else { margin }, &mut roots);
     let mut done = [false; MAX_SIZE];
     let mut apart = true;
     for i in 0..count {
         let [x, imaginary] = roots[i];
-        if done[i] {
+        let (mut cluster, mut centre) = (0, 0.0);
+        for (j, [other, height]) in roots[..count].iter().enumerate() {
+            if !done[j] && (other - x).abs() + (height - imaginary).abs() < tight {
+                cluster += 1;
+                centre += other;
+            }
+        }
+        if done[i] || cluster < 3 || zooms == 0 {
+            continue;
+        }
+        for (j, [other, height]) in roots[..count].iter().enumerate() {
+            done[j] |= (other - x).abs() + (height - imaginary).abs() < tight;
+        }
+        let width = 2.0 * ZOOM * piece.half;
+        let inner = Piece::new(table, centre / cluster as f64 - 0.5 * width, width, |x| ordered.value(x));
+        apart &= look(ordered, table, &inner, turns, unreal, zooms - 1, found);
+    }
+    for i in 0..count {
+        let [x, imaginary] = roots[i];
+        if done[i] || imaginary.abs() > margin {
             continue;
         }
         let (mut together, mut sum) = (0, 0.0);
         let mut near = [false; MAX_SIZE];
         for (j, [other, height]) in roots[..count].iter().enumerate() {
-            near[j] = (other - x).abs() + (height - imaginary).abs() < APART;
+            near[j] = !done[j] && (other - x).abs() + (height - imaginary).abs() < APART;
             if near[j] {
                 together += 1;
                 sum += other;
@@ -190,7 +229,8 @@ fn look(ordered: &Ordered<'_>, piece: &Piece, turns: bool, slack: f64, found: &m
             // Several solutions that share the value, or nearly do.
             let mean = sum / together as f64;
             let (arranged, six, _) = ordered.eliminated(mean);
-            if several(&six, STILL, |pair| add(&arranged, pair, mean, turns, found)) == together {
+            let all = several(&six, STILL, |pair| add(&arranged, pair, mean, turns, found)) == together;
+            if all {
                 done.iter_mut().zip(near).for_each(|(done, near)| *done |= near);
                 continue;
             }

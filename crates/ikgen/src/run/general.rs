@@ -6,7 +6,7 @@ use crate::kernel::candidate::Arm;
 use crate::kernel::chain::Frame;
 use crate::kernel::six::Order;
 use crate::kernel::vector::Line;
-use crate::orders::orders;
+use crate::orders::{Known, orders};
 
 /// Poses on which orders of elimination are compared, at each load.
 const POSES: usize = 8;
@@ -21,7 +21,7 @@ impl General {
     /// For a chain with these variables given; nothing for other kinds of chains.
     pub(super) fn new(chain: &TrueChain, held: &[bool]) -> Option<Self> {
         let (axes, given) = six_lines(chain, held)?;
-        let orders = orders(&axes, given, POSES);
+        let orders = orders(&axes, given.map(Known::from).as_slice(), POSES);
         (!orders.is_empty()).then_some(Self { orders })
     }
 

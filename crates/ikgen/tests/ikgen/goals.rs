@@ -159,6 +159,28 @@ fn every_goal_of_every_type_is_solved_and_nothing_is_wrong() {
     }
 }
 
+/// Rays of arms whose joints cannot be found one after the other, given joints in several places, more joints than the type needs, and a
+/// tool that turns about the last joint.
+#[test]
+fn types_are_solved_where_the_unknowns_are_not_found_one_by_one() {
+    use GoalType::*;
+    let options = |goal| Options { goal, trial_poses: 12, ..Options::default() };
+    for (chain, goal, poses) in [
+        (arms::ur5(), Ray4D, 40),
+        (arms::panda(), Ray4D, 40),
+        (arms::kr6(), TranslationZAxisAngle4D, 100),
+        (arms::iiwa(), TranslationLocalGlobal6D, 100),
+        (arms::scara(), TranslationDirection5D, 200),
+    ] {
+        let compiled = compile(&chain, &options(goal)).unwrap_or_else(|r| panic!("{} {r}", chain.name));
+        let report = prove(&compiled, 0.0, &ProofOptions { poses, seed: 7 }, &|| 0.0);
+        assert!(report.emitted, "{} {}: {}", chain.name, goal.name(), report.reason);
+        assert_eq!(report.sets.iter().map(|set| set.wrong).sum::<usize>(), 0, "{}", chain.name);
+        let random = &report.sets[0];
+        assert_eq!((random.solved, random.recovered), (poses, poses), "{}: {random:?}", report.class);
+    }
+}
+
 /// The three turns of which only the sum shows in the angle are not told apart near singular poses as well as those of other arms.
 #[test]
 fn an_angle_to_the_vertical_of_a_planar_arm() {

@@ -10,36 +10,39 @@ use crate::generate::facts::Axis;
 use crate::generate::problem::Problem;
 use crate::kernel::six::{MOST_ORDERS, Order};
 use crate::kernel::vector::Line;
-use crate::orders::orders;
+use crate::orders::{Known, orders};
 
 /// Poses on which orders are compared.
 const POSES: usize = 24;
 
 pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String> {
-    let given = problem.given;
-    let given_axis = given.map(|(_, a)| a);
-    if problem.axes.iter().chain(&given_axis).any(|a| a.motion != ChainMotion::Revolute) {
+    let given = problem.given.clone();
+    if problem.axes.iter().any(|a| a.motion != ChainMotion::Revolute) {
         return Err("a joint slides".into());
     }
     let line = |axis: &Axis| Line { direction: axis.direction.into(), point: axis.point.into() };
     let axes: Vec<Line> = problem.axes.iter().map(line).collect();
     let axes = axes.try_into().map_err(|_| "there are not six unknowns".to_owned())?;
-    let orders = orders(&axes, given.map(|(before, axis)| (before, line(&axis))), POSES);
+    let slides = |axis: &Axis| axis.motion == ChainMotion::Prismatic;
+    let known: Vec<Known> =
+        given.iter().map(|(before, a)| Known { before: *before, line: line(a), slides: slides(a) }).collect();
+    let orders = orders(&axes, &known, POSES);
     let Some(best) = orders.first() else {
         return Err("the elimination breaks down in all orders".into());
     };
     b.note("the six axes as lines, the goal, and the orders of elimination with their degrees");
     let mut args: Vec<Scalar<'_>> = Vec::new();
     for (i, axis) in problem.axes.iter().enumerate() {
-        let mut line = Symbolic::constant(b, axis);
-        if let Some((_, axis)) = given.filter(|(before, _)| *before <= i) {
-            line = line.moved(b, &axis, problem.move_of(b, &axis));
-        }
+        let before = given.iter().rev().filter(|(before, _)| *before <= i);
+        let line = before.fold(Symbolic::constant(b, axis), |line, (_, axis)| {
+            line.moved(b, axis, problem.move_of(b, axis))
+        });
         args.extend(line.direction.0);
         args.extend(line.point.0);
     }
     let goal = problem.goal(b);
-    let undo = given.map(|(_, axis)| (problem.move_of(b, &axis).back(), axis));
+    let undo: Vec<(Move<'_>, Axis)> =
+        given.iter().map(|(_, axis)| (problem.move_of(b, axis).back(), *axis)).collect();
     let unit = |i: usize| {
         let mut e = nalgebra::Vector3::zeros();
         e[i] = 1.0;

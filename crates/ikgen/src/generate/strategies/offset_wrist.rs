@@ -36,7 +36,7 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
     if problem.axes.iter().any(|a| a.motion != ChainMotion::Revolute) {
         return Err("a joint slides".into());
     }
-    if problem.given.is_some() {
+    if !problem.given.is_empty() {
         return Err("a given joint lies between the unknown ones".into());
     }
     let sides = sides(problem)?;

@@ -22,13 +22,13 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
     {
         return Err("two axes of the wrist are parallel".into());
     }
-    if problem.given.is_some_and(|(before, _)| before > 3) {
+    let given = problem.one_given()?;
+    if given.is_some_and(|(before, _)| before > 3) {
         return Err("the given joint is inside of the wrist".into());
     }
     for axis in &mut problem.axes[3..] {
         axis.point = centre;
     }
-    let given = problem.given;
     let inner = given.filter(|(before, _)| (1..3).contains(before));
     let [mut a1, mut a2, mut a3] = [problem.axes[0], problem.axes[1], problem.axes[2]];
 

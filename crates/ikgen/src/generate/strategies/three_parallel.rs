@@ -24,7 +24,7 @@ pub(super) fn write(problem: &mut Problem, b: &Builder) -> Result<String, String
     if !parallel(&a[1], &a[2], near) || !parallel(&a[2], &a[3], near) {
         return Err("axes 2, 3 and 4 are not parallel".into());
     }
-    if problem.given.is_some() {
+    if !problem.given.is_empty() {
         return Err("a given joint lies between the unknown ones".into());
     }
     if parallel(&a[0], &a[1], 0.02) || parallel(&a[4], &a[3], 0.02) || parallel(&a[4], &a[5], 0.02) {
