@@ -1594,7 +1594,7 @@ static int ik_look_at_piece(const ik_swept *swept, int code, const double *table
     /* Where the five others lose a freedom at some value, whatever the goal, the determinant has a root of a high order there, which hides
        others beside it: it is looked at alone. */
     for (i = 0; i < count; i++) {
-        double centre = 0.0, width = 2.0 * (1.0 / 16.0) * piece->half;
+        double centre = 0.0, width = 2.0 * 0.125 * piece->half;
         ik_piece inner;
         together = 0;
         for (j = 0; j < count; j++) {
@@ -1607,14 +1607,16 @@ static int ik_look_at_piece(const ik_swept *swept, int code, const double *table
         if (done[i] || together < 3 || zooms == 0) continue;
         for (j = 0; j < count; j++) done[j] |= near[j];
         ik_piece_at(swept, code, table, centre / (double)together - 0.5 * width, width, &inner);
-        apart &= ik_look_at_piece(swept, code, table, &inner, unreal, zooms - 1, found);
+        ik_look_at_piece(swept, code, table, &inner, unreal, zooms - 1, found);
+        /* What lies so near to others may be clearer in another order. */
+        apart = 0;
     }
     for (i = 0; i < count; i++) {
         double x = roots[i][0], imaginary = roots[i][1], sum = 0.0, mean, change;
         if (done[i] || ik_abs(imaginary) > margin) continue;
         together = 0;
         for (j = 0; j < count; j++) {
-            near[j] = !done[j] && ik_abs(roots[j][0] - x) + ik_abs(roots[j][1] - imaginary) < 3e-3;
+            near[j] = !done[j] && ik_abs(roots[j][1]) <= margin && ik_abs(roots[j][0] - x) + ik_abs(roots[j][1] - imaginary) < 3e-3;
             if (near[j]) {
                 together++;
                 sum += roots[j][0];

@@ -235,10 +235,15 @@ fn search(
     let allowed = ladder.into_iter().filter(|t| needed && *t <= options.tolerance.max(1e-9));
     for tolerance in allowed.collect::<Vec<_>>() {
         for free in &choices {
-            match one_by_one(chain, options, free, tolerance, &letters, trace) {
-                Ok(found) => keep_better(&mut best, found),
-                Err(Some(reason)) => failure = Some(reason),
-                Err(None) => {}
+            for steady in [true, false] {
+                match one_by_one(chain, options, free, tolerance, steady, &letters, trace) {
+                    Ok(found) => keep_better(&mut best, found),
+                    Err(Some(reason)) => failure = Some(reason),
+                    Err(None) => {}
+                }
+                if best.as_ref().is_some_and(|b| b.lost == 0) {
+                    break;
+                }
             }
         }
         if best.is_some() {
@@ -375,13 +380,14 @@ fn one_by_one(
     options: &Options,
     free: &[usize],
     tolerance: f64,
+    steady: bool,
     letters: &str,
     trace: &mut Trace<'_>,
 ) -> Result<Found, Option<String>> {
     let facts = Facts::coupled(chain, tolerance).ok_or(None)?;
     let line = format!("tolerance {tolerance:e}, free {free:?}, one by one: ");
     let builder = Builder::new(options.goal, chain.variables.len(), free.to_vec());
-    let how = match super::one_by_one::write(&facts, free, &builder) {
+    let how = match super::one_by_one::write(&facts, free, steady, &builder) {
         Ok(how) => how,
         Err(reason) => {
             trace.push(format!("{line}{reason}"));

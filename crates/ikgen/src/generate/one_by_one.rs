@@ -42,8 +42,9 @@ impl Solution {
     }
 }
 
-/// Writes the program; `free` are the variables that are given. Says how the unknowns were found, or which are left.
-pub(super) fn write(facts: &Facts, free: &[usize], b: &Builder) -> Result<String, String> {
+/// Writes the program; `free` are the variables that are given. With `steady` equations whose coefficients change with other unknowns are
+/// only taken where there is no other. Says how the unknowns were found, or which are left.
+pub(super) fn write(facts: &Facts, free: &[usize], steady: bool, b: &Builder) -> Result<String, String> {
     let axes = &facts.ideal;
     let variables = axes.iter().map(|a| a.variable + 1).max().unwrap_or(0);
     let motion = |v: usize| axes.iter().find(|a| a.variable == v).map_or(ChainMotion::Revolute, |a| a.motion);
@@ -63,8 +64,9 @@ pub(super) fn write(facts: &Facts, free: &[usize], b: &Builder) -> Result<String
     let mut unknown: Vec<usize> = (0..variables).filter(|v| !free.contains(v)).collect();
     let mut order = Vec::new();
     while !unknown.is_empty() {
-        let found =
-            [true, false].into_iter().find_map(|steady| next(axes, &candidates, &unknown, variables, steady));
+        let found = [steady, false]
+            .into_iter()
+            .find_map(|steady| next(axes, &candidates, &unknown, variables, steady));
         let Some((v, solution)) = found else {
             let numbers: Vec<String> = unknown.iter().map(|v| (v + 1).to_string()).collect();
             let left = left(axes, &candidates, &unknown, variables);

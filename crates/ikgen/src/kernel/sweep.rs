@@ -45,8 +45,8 @@ const ROUNDING: f64 = 0.1;
 /// a freedom at some value, whatever the goal, the determinant has a root of a high order there, which hides others beside it.
 const CLUSTER: f64 = 0.05;
 
-/// The interval round them, as part of the one before.
-const ZOOM: f64 = 1.0 / 16.0;
+/// The interval round their mean, as part of the one before: it holds all of them.
+const ZOOM: f64 = 0.125;
 
 /// How many times.
 const ZOOMS: usize = 4;
@@ -209,7 +209,9 @@ fn look(
         }
         let width = 2.0 * ZOOM * piece.half;
         let inner = Piece::new(table, centre / cluster as f64 - 0.5 * width, width, |x| ordered.value(x));
-        apart &= look(ordered, table, &inner, turns, unreal, zooms - 1, found);
+        look(ordered, table, &inner, turns, unreal, zooms - 1, found);
+        // What lies so near to others may be clearer in another order.
+        apart = false;
     }
     for i in 0..count {
         let [x, imaginary] = roots[i];
@@ -219,7 +221,8 @@ fn look(
         let (mut together, mut sum) = (0, 0.0);
         let mut near = [false; MAX_SIZE];
         for (j, [other, height]) in roots[..count].iter().enumerate() {
-            near[j] = !done[j] && (other - x).abs() + (height - imaginary).abs() < APART;
+            near[j] =
+                !done[j] && height.abs() <= margin && (other - x).abs() + (height - imaginary).abs() < APART;
             if near[j] {
                 together += 1;
                 sum += other;

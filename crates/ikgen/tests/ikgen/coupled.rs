@@ -78,7 +78,6 @@ fn chains() -> Vec<SerialChain> {
         telescope(crooked("two slides"), 0.5),
         following(five, 2, 1, 1.0),
         lengthened(1),
-        lengthened(4),
     ]
 }
 
