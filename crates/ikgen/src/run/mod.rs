@@ -13,6 +13,7 @@ mod true_chain;
 
 pub use batch::Batch;
 pub use bytecode::{Bytecode, Candidate, TooLarge};
+#[cfg(feature = "generate")]
 pub(crate) use general::six_lines;
 pub use redundancy::{Completeness, FreeIntervals, RedundancyOptions, Side, SwivelBranch};
 pub use solver::{Engine, LoadError, Solver};

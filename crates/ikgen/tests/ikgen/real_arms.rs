@@ -23,7 +23,7 @@ impl System for Files {
 /// The chain of an arm of the shared data; `None`, and said so, where the data are not.
 pub(crate) fn real(file: &str, base: &str, tip: &str) -> Option<SerialChain> {
     let folder = std::env::var_os("ROBOTC_SHARED_DATA")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data"), PathBuf::from);
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
     if !folder.join("arms").exists() {
         println!("skipped: shared data not present");
         return None;
