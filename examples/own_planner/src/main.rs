@@ -10,7 +10,7 @@ mod plane;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use robotc_planning::problem::{PlanningProblem, Registry, solve};
+use robotc_planning::problem::{PlanningProblem, Registry, solve, unknown_keys};
 use robotc_planning::{Budget, EdgeChecker};
 
 fn main() -> ExitCode {
@@ -29,7 +29,11 @@ fn main() -> ExitCode {
 }
 
 fn compare(file: &str) -> Result<(), Box<dyn std::error::Error>> {
-    let problem = PlanningProblem::read(&std::fs::read_to_string(file)?)?;
+    let text = std::fs::read_to_string(file)?;
+    let problem = PlanningProblem::read(&text)?;
+    for key in unknown_keys(&text, &problem) {
+        eprintln!("warning: {key}");
+    }
     let mut registry = Registry::standard();
     registry.register(Box::new(grid::Grid))?;
     registry.get(&problem.planner)?;

@@ -1253,9 +1253,10 @@ static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int 
                 starts[0] = extremum[0] - side;
                 starts[1] = extremum[0] + side;
                 many = 2;
-            } else {
-                for (j = 0; j < count; j++) if (near[j]) starts[many++] = roots[j].angle;
             }
+            /* Real roots may also be of solutions far apart that share the angle by chance. */
+            if (!fold || imaginary == 0.0)
+                for (j = 0; j < count; j++) if (near[j]) starts[many++] = roots[j].angle;
         }
         for (j = 0; j < many; j++) {
             turn = ik_turn_in_view(view, starts[j], &square);

@@ -315,7 +315,9 @@ fn look(
                 let side = sqrt(2.0 * (exact.abs() + ROUNDING * waves.largest) / bend.abs());
                 starts[..2].copy_from_slice(&[extremum - side, extremum + side]);
                 many = 2;
-            } else {
+            }
+            // Real roots may also be of solutions far apart that share the angle by chance.
+            if !fold || imaginary == 0.0 {
                 for (root, _) in roots.iter().zip(near).filter(|(_, near)| *near) {
                     starts[many] = root.angle;
                     many += 1;
