@@ -15,12 +15,13 @@ use robotc_core::geom::{HeightField, PointCloud};
 use robotc_core::model::{Geometry, Origin, Shape};
 use robotc_core::task::Obstacle;
 use robotc_planning::manipulation;
+use robotc_planning::problem::unknown_keys;
 use robotc_planning::{Budget, Interrupt};
 use robotc_runtime::film::{TreeKeeper, film};
 use robotc_runtime::{MotionTable, execute, view};
 
 use crate::arrays;
-use crate::errors::PlanError;
+use crate::errors::{PlanError, warn};
 use crate::long;
 use crate::motion::{self, Given, Motion, Wanted};
 
@@ -191,7 +192,13 @@ impl Session {
         let own = this.session.options();
         let options = match options {
             None => own,
-            Some(text) => own.with_document(text).map_err(|e| PyValueError::new_err(e.to_string()))?,
+            Some(text) => {
+                let options = own.with_document(text).map_err(|e| PyValueError::new_err(e.to_string()))?;
+                for key in unknown_keys(text, &options) {
+                    warn(py, &key.to_string())?;
+                }
+                options
+            }
         };
         let mut trees = TreeKeeper::default();
         let start = Instant::now();
