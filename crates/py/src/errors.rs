@@ -7,6 +7,7 @@ use pyo3::exceptions::{PyException, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use robotc_core::{Diagnostics, Severity, Sources};
+use robotc_planning::problem::UnknownKey;
 
 create_exception!(robotc, SpecificationError, PyValueError, "A specification cannot be used.");
 create_exception!(robotc, CompileError, PyException, "An artefact could not be computed.");
@@ -64,4 +65,9 @@ pub(crate) fn accept<T>(
 /// A `UserWarning`; an error where warnings are errors.
 pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
     PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(text).unwrap_or_default(), 1)
+}
+
+/// Warns of the keys of a document that were ignored.
+pub(crate) fn warn_of(py: Python<'_>, ignored: &[UnknownKey]) -> PyResult<()> {
+    ignored.iter().try_for_each(|key| warn(py, &key.to_string()))
 }

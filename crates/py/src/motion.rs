@@ -13,7 +13,7 @@ use robotc_planning::{Interrupt, PlanningProblem, Registry};
 use robotc_runtime::motion::interrupted;
 
 use crate::arrays;
-use crate::errors::{PlanError, warn};
+use crate::errors::{PlanError, warn_of};
 use crate::long;
 
 /// A free motion of an arm.
@@ -49,9 +49,7 @@ impl Given<'_> {
                 };
                 let problem =
                     session.read_problem(&text).map_err(|error| PyValueError::new_err(error.to_string()))?;
-                for key in unknown_keys(&text, &problem) {
-                    warn(document.py(), &key.to_string())?;
-                }
+                warn_of(document.py(), &unknown_keys(&text, &problem))?;
                 problem
             }
         };

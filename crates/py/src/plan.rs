@@ -21,7 +21,7 @@ use robotc_runtime::film::{TreeKeeper, film};
 use robotc_runtime::{MotionTable, execute, view};
 
 use crate::arrays;
-use crate::errors::{PlanError, warn};
+use crate::errors::{PlanError, warn_of};
 use crate::long;
 use crate::motion::{self, Given, Motion, Wanted};
 
@@ -194,9 +194,7 @@ impl Session {
             None => own,
             Some(text) => {
                 let options = own.with_document(text).map_err(|e| PyValueError::new_err(e.to_string()))?;
-                for key in unknown_keys(text, &options) {
-                    warn(py, &key.to_string())?;
-                }
+                warn_of(py, &unknown_keys(text, &options))?;
                 options
             }
         };

@@ -386,22 +386,8 @@ fn one_by_one(
 ) -> Result<Found, Option<String>> {
     let facts = Facts::coupled(chain, tolerance).ok_or(None)?;
     let line = format!("tolerance {tolerance:e}, free {free:?}, one by one: ");
-    let builder = Builder::new(options.goal, chain.variables.len(), free.to_vec());
-    let how = match super::one_by_one::write(&facts, free, steady, &builder) {
-        Ok(how) => how,
-        Err(reason) => {
-            trace.push(format!("{line}{reason}"));
-            return Err(Some(format!("{letters}: {reason}")));
-        }
-    };
-    let class = describe(letters, "one by one", false, &how, free, chain);
-    let snap = super::facts::snap_between(&facts.described, &facts.ideal);
-    let result = finished(builder, class.clone(), snap, false, chain, options);
-    match &result {
-        Ok(found) => trace.push(format!("{line}{how}; solved, {} trial poses lost", found.lost)),
-        Err(reason) => trace.push(format!("{line}{how}; {reason}")),
-    }
-    result.map_err(|reason| Some(format!("{class}: {reason}")))
+    let write = |builder: &Builder| super::one_by_one::write(&facts, free, steady, builder);
+    written(chain, options, &facts, free, "one by one", letters, &line, &write, trace)
 }
 
 /// As [`attempt`], by sweeping one unknown that slides or moves several joints.
@@ -414,15 +400,31 @@ fn swept(
 ) -> Result<Found, Option<String>> {
     let facts = Facts::geared(chain, EXACT);
     let line = format!("free {free:?}, sweep: ");
+    let write = |builder: &Builder| super::sweep::write(&facts, free, builder);
+    written(chain, options, &facts, free, "general", letters, &line, &write, trace)
+}
+
+/// The program that `write` makes of a whole chain, tried. `line` begins what is told of it, `name` its class.
+fn written(
+    chain: &SerialChain,
+    options: &Options,
+    facts: &Facts,
+    free: &[usize],
+    name: &str,
+    letters: &str,
+    line: &str,
+    write: &dyn Fn(&Builder) -> Result<String, String>,
+    trace: &mut Trace<'_>,
+) -> Result<Found, Option<String>> {
     let builder = Builder::new(options.goal, chain.variables.len(), free.to_vec());
-    let how = match super::sweep::write(&facts, free, &builder) {
+    let how = match write(&builder) {
         Ok(how) => how,
         Err(reason) => {
             trace.push(format!("{line}{reason}"));
             return Err(Some(format!("{letters}: {reason}")));
         }
     };
-    let class = describe(letters, "general", false, &how, free, chain);
+    let class = describe(letters, name, false, &how, free, chain);
     let snap = super::facts::snap_between(&facts.described, &facts.ideal);
     let result = finished(builder, class.clone(), snap, false, chain, options);
     match &result {
