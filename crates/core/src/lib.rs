@@ -12,6 +12,7 @@ pub mod ik;
 pub mod joint_limits;
 pub mod mesh;
 pub mod model;
+pub mod npy;
 pub mod rng;
 pub mod robot;
 pub mod scan;

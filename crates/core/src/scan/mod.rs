@@ -3,7 +3,6 @@
 //! The readers never panic on a bad file, and take no more memory than a few times its size and that of what it may hold at most.
 
 mod image;
-mod npy;
 mod pcd;
 mod ply;
 mod table;
@@ -12,6 +11,7 @@ use nalgebra::Point3;
 use thiserror::Error;
 
 use crate::geom::{HeightField, PointCloud};
+use crate::npy;
 
 /// Points as read, in the unit and frame of the file.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -61,7 +61,7 @@ pub const GRID_FORMATS: &str = "a grey PNG or an NPY file, or a text file with a
 pub fn points(bytes: &[u8]) -> Result<Points, ScanError> {
     let all = match bytes {
         _ if ply::is_ply(bytes) => ply::read(bytes)?,
-        _ if npy::is_npy(bytes) => points_of_array(&npy::read(bytes)?)?,
+        _ if npy::is_npy(bytes) => points_of_array(bytes)?,
         _ if pcd::is_pcd(bytes) => pcd::read(bytes)?,
         _ => table::points(bytes)?,
     };
@@ -80,9 +80,8 @@ pub fn grid(bytes: &[u8]) -> Result<Grid, ScanError> {
     let grid = match bytes {
         _ if image::is_png(bytes) => image::read(bytes)?,
         _ if npy::is_npy(bytes) => {
-            let array = npy::read(bytes)?;
-            let &[rows, columns] = array.shape.as_slice() else {
-                let shape = &array.shape;
+            let (shape, numbers) = numbers_of_array(bytes)?;
+            let &[rows, columns] = shape.as_slice() else {
                 return Err(ScanError::Malformed(format!(
                     "an array of shape {shape:?} is no grid; it needs two dimensions"
                 )));
@@ -90,8 +89,7 @@ pub fn grid(bytes: &[u8]) -> Result<Grid, ScanError> {
             if rows * columns > HeightField::MOST_SAMPLES {
                 return Err(ScanError::TooLarge(HeightField::MOST_SAMPLES, "samples"));
             }
-            let values = (0..rows * columns).map(|i| array.at(&[i / columns, i % columns])).collect();
-            Grid { columns, values, full: None }
+            Grid { columns, values: numbers.in_rows(), full: None }
         }
         _ => table::grid(bytes)?,
     };
@@ -101,31 +99,36 @@ pub fn grid(bytes: &[u8]) -> Result<Grid, ScanError> {
     }
 }
 
+/// An array of numbers, with its shape.
+fn numbers_of_array(bytes: &[u8]) -> Result<(Vec<usize>, npy::Numbers<'_>), ScanError> {
+    let array = npy::read(bytes).map_err(|wrong| ScanError::Malformed(wrong.to_string()))?;
+    match array.values {
+        npy::Values::Numbers(numbers) => Ok((array.shape, numbers)),
+        npy::Values::Texts(_) => Err(ScanError::Malformed("holds texts, not numbers".into())),
+    }
+}
+
 /// The first three numbers along the last dimension of an array.
-fn points_of_array(array: &npy::Array) -> Result<Vec<[f64; 3]>, ScanError> {
-    let Some((&width, rows)) =
-        array.shape.split_last().filter(|(width, rows)| **width >= 3 && !rows.is_empty())
-    else {
-        let shape = &array.shape;
+fn points_of_array(bytes: &[u8]) -> Result<Vec<[f64; 3]>, ScanError> {
+    let (shape, numbers) = numbers_of_array(bytes)?;
+    let Some((_, rows)) = shape.split_last().filter(|(width, rows)| **width >= 3 && !rows.is_empty()) else {
         return Err(ScanError::Malformed(format!(
             "an array of shape {shape:?} is no list of points; it needs three columns"
         )));
     };
     let count: usize = rows.iter().product();
     bounded(count)?;
-    let mut index = vec![0; array.shape.len()];
-    let mut all = Vec::with_capacity(count);
-    for mut i in 0..count {
+    let mut index = vec![0; shape.len()];
+    let point = |mut i: usize| {
         for (k, &n) in rows.iter().enumerate().rev() {
             (index[k], i) = (i % n, i / n);
         }
-        all.push([0, 1, 2].map(|k| {
-            *index.last_mut().expect("it has a dimension") = k;
-            array.at(&index)
-        }));
-    }
-    debug_assert!(width >= 3);
-    Ok(all)
+        [0, 1, 2].map(|k| {
+            index[rows.len()] = k;
+            numbers.at(&index)
+        })
+    };
+    Ok((0..count).map(point).collect())
 }
 
 /// Refuses more points than a cloud may have.
@@ -133,42 +136,6 @@ fn bounded(count: usize) -> Result<usize, ScanError> {
     match count > PointCloud::MOST_POINTS {
         true => Err(ScanError::TooLarge(PointCloud::MOST_POINTS, "points")),
         false => Ok(count),
-    }
-}
-
-/// A type of numbers in binary files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Number {
-    Unsigned(usize),
-    Signed(usize),
-    Float(usize),
-}
-
-impl Number {
-    /// Bytes of one.
-    fn size(self) -> usize {
-        match self {
-            Self::Unsigned(size) | Self::Signed(size) | Self::Float(size) => size,
-        }
-    }
-
-    /// The number at the start of `bytes`, of which there are enough.
-    fn read(self, bytes: &[u8], big_endian: bool) -> f64 {
-        let mut raw = [0; 8];
-        let size = self.size();
-        raw[..size].copy_from_slice(&bytes[..size]);
-        if big_endian {
-            raw[..size].reverse();
-        }
-        let bits = u64::from_le_bytes(raw);
-        match self {
-            Self::Unsigned(_) => bits as f64,
-            Self::Signed(_) => {
-                (bits.wrapping_shl(64 - 8 * size as u32) as i64 >> (64 - 8 * size as u32)) as f64
-            }
-            Self::Float(4) => f64::from(f32::from_bits(bits as u32)),
-            Self::Float(_) => f64::from_bits(bits),
-        }
     }
 }
 

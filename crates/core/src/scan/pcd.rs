@@ -1,6 +1,7 @@
 //! PCD of the Point Cloud Library, version 0.6 and 0.7: text, binary, and binary compressed by LZF.
 
-use super::{Number, ScanError, bounded};
+use super::{ScanError, bounded};
+use crate::npy::Number;
 
 pub(super) fn is_pcd(bytes: &[u8]) -> bool {
     let start = &bytes[..bytes.len().min(4096)];

@@ -1,6 +1,7 @@
 //! PLY, text and binary (Turk, "The PLY polygon file format", 1994): the vertices.
 
-use super::{Number, ScanError, bounded};
+use super::{ScanError, bounded};
+use crate::npy::Number;
 
 pub(super) fn is_ply(bytes: &[u8]) -> bool {
     bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r")

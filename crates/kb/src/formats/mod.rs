@@ -4,8 +4,8 @@
 //! tool; [`GraspFile`] stands between the two.
 
 mod acronym;
+mod archive;
 mod isaac_grasp;
-mod npy;
 mod npz;
 
 use nalgebra::{Matrix3, Rotation3, Translation3, UnitQuaternion};

@@ -3,7 +3,7 @@
 //! `transforms` (N x 4 x 4, the gripper's link in the object's frame) and `confidence` (N) for N grasps; `joints` (J),
 //! `closed` and `open` (N x J); `object` and `gripper_link`. Only `transforms` has to be there when reading.
 
-use super::npy::{Array, read as read_archive, write as write_archive};
+use super::archive::{Array, read as read_archive, write as write_archive};
 use super::{FileGrasp, FormatError, GraspFile, pose_of_rows, rows_of_pose};
 
 pub(super) fn read(bytes: &[u8]) -> Result<GraspFile, FormatError> {

@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
+use robotc_core::npy::{self, NpyError};
+
 /// An array of an archive.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Array {
     /// Numbers in rows: the last index runs fastest.
     Numbers { shape: Vec<usize>, values: Vec<f64> },
-    /// Texts in a row; one alone may have no index.
+    /// Texts, in the order in which they stand in the file.
     Texts(Vec<String>),
 }
 
@@ -22,7 +24,7 @@ pub(super) fn write(arrays: &[(&str, Array)]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut directory = Vec::new();
     for (name, array) in arrays {
-        let (name, content) = (format!("{name}.npy"), npy(array));
+        let (name, content) = (format!("{name}.npy"), to_npy(array));
         let offset = bytes.len() as u32;
         let mut about = Vec::new();
         // Version 2.0, no flags, stored.
@@ -87,7 +89,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<(String, Array)>, String> {
         let start = local + 30 + skipped(26)? + skipped(28)?;
         let content = slice(bytes, start, length).ok_or_else(short)?;
         left = left.checked_sub(length).ok_or("its files overlap")?;
-        arrays.push((name.clone(), of_npy(content).map_err(|wrong| format!("{name}: {wrong}"))?));
+        arrays.push((name.clone(), of_npy(content).map_err(|wrong| format!("{name} {wrong}"))?));
         at += 46 + name_length + behind;
     }
     Ok(arrays)
@@ -106,7 +108,7 @@ fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
 }
 
 /// An array as an NPY file.
-fn npy(array: &Array) -> Vec<u8> {
+fn to_npy(array: &Array) -> Vec<u8> {
     let (kind, shape, data): (String, Vec<usize>, Vec<u8>) = match array {
         Array::Numbers { shape, values } => {
             ("f8".into(), shape.clone(), values.iter().flat_map(|x| x.to_le_bytes()).collect())
@@ -132,53 +134,12 @@ fn npy(array: &Array) -> Vec<u8> {
 }
 
 /// The array of an NPY file.
-fn of_npy(bytes: &[u8]) -> Result<Array, String> {
-    let header = match bytes {
-        [0x93, b'N', b'U', b'M', b'P', b'Y', 1, _, ..] => u16_at(bytes, 8).map(|n| (10, usize::from(n))),
-        [0x93, b'N', b'U', b'M', b'P', b'Y', 2 | 3, _, ..] => u32_at(bytes, 8).map(|n| (12, n as usize)),
-        _ => None,
-    };
-    let (start, length) = header.ok_or("it is not an NPY file")?;
-    let head = String::from_utf8_lossy(slice(bytes, start, length).ok_or("it ends early")?);
-    let after = |key: &str| head.split_once(&format!("'{key}':")).map(|(_, rest)| rest.trim_start());
-    let kind = after("descr").and_then(|rest| rest.split('\'').nth(1)).ok_or("it has no type")?;
-    let shape = after("shape").and_then(|rest| rest.strip_prefix('(')?.split(')').next());
-    let sides = shape.ok_or("it has no shape")?.split(',').map(str::trim).filter(|side| !side.is_empty());
-    let shape: Vec<usize> = sides.map(str::parse).collect::<Result<_, _>>().map_err(|_| "it has no shape")?;
-    if shape.len() > 1 && after("fortran_order").is_some_and(|rest| rest.starts_with("True")) {
-        return Err("its first index runs fastest; write it with order=\"C\"".into());
-    }
-    let data = &bytes[start + length..];
-    let count =
-        shape.iter().try_fold(1_usize, |all, &side| all.checked_mul(side)).ok_or("it is too large")?;
-    let of = |width: usize| {
-        let whole = count.checked_mul(width).filter(|&all| all <= data.len());
-        whole.map(|all| data[..all].chunks_exact(width.max(1))).ok_or("it ends early")
-    };
-    match kind.strip_prefix('<') {
-        Some("f8") => {
-            let number = |b: &[u8]| f64::from_le_bytes(b.try_into().expect("chunks of 8"));
-            Ok(Array::Numbers { values: of(8)?.map(number).collect(), shape })
-        }
-        Some("f4") => {
-            let number = |b: &[u8]| f64::from(f32::from_le_bytes(b.try_into().expect("chunks of 4")));
-            Ok(Array::Numbers { values: of(4)?.map(number).collect(), shape })
-        }
-        Some(text) if text.starts_with('U') => {
-            let longest: usize = text[1..].parse().map_err(|_| "its type is unknown")?;
-            let width =
-                longest.checked_mul(4).filter(|&width| width > 0).ok_or("its texts have no length")?;
-            let one = |b: &[u8]| {
-                let codes = b.chunks_exact(4).map(|c| u32::from_le_bytes(c.try_into().expect("chunks of 4")));
-                codes
-                    .take_while(|&code| code != 0)
-                    .map(|code| char::from_u32(code).unwrap_or('\u{fffd}'))
-                    .collect()
-            };
-            Ok(Array::Texts(of(width)?.map(one).collect()))
-        }
-        _ => Err(format!("its type is {kind}; known are <f8, <f4 and <U")),
-    }
+fn of_npy(bytes: &[u8]) -> Result<Array, NpyError> {
+    let array = npy::read(bytes)?;
+    Ok(match array.values {
+        npy::Values::Numbers(numbers) => Array::Numbers { values: numbers.in_rows(), shape: array.shape },
+        npy::Values::Texts(texts) => Array::Texts(texts),
+    })
 }
 
 /// The check sum of ZIP, bit by bit: archives of grasps are small.
