@@ -178,7 +178,8 @@ fn replay(
         Goal::Open { .. } => None,
     };
     let mut checker = RobotChecker::new(scene, &space, trajectory.dofs(), q, rules, resolution);
-    if let (Some(tilt), Some(held), SegmentKind::Carry) = (keep_upright, &segment.held, segment.kind) {
+    let straight = matches!(segment.kind, SegmentKind::Lift | SegmentKind::Lower);
+    if let (Some(tilt), Some(held), false) = (keep_upright, &segment.held, straight) {
         let sample = |time: f64| trajectory.sample(time).positions;
         let mut full = q.clone();
         for (time, at) in dense_states(&checker, trajectory.times(), &sample, resolution) {

@@ -48,15 +48,22 @@ impl<'c, 'a> Maker<'c, 'a> {
     }
 
     /// A motion of the base.
-    pub(super) fn drive(&mut self, drive: &Drive, path: &[Vec<f64>], scene: &Scene) {
+    pub(super) fn drive(
+        &mut self,
+        drive: &Drive,
+        path: &[Vec<f64>],
+        scene: &Scene,
+        rules: Rules,
+        held: Option<&Held>,
+    ) {
         let cx = self.cx;
         let (dofs, resolution) = (drive.dofs.to_vec(), cx.options.resolution);
-        let mut checker = RobotChecker::new(scene, &drive.space, &dofs, &self.q, cx.free(None), resolution);
+        let mut checker = RobotChecker::new(scene, &drive.space, &dofs, &self.q, rules, resolution);
         let timed = time_path(&mut checker, path, &drive.limits, &cx.options.timing);
         let model = &cx.robot().model;
         let names = dofs.iter().map(|&d| model.dofs()[d].name.clone()).collect();
         let trajectory = timed.into_trajectory(dofs, names).expect("times of a timed path grow");
-        self.push(SegmentKind::Drive, trajectory, None);
+        self.push(SegmentKind::Drive, trajectory, held);
     }
 
     /// A straight motion of the fingers.

@@ -4,17 +4,22 @@
 //! (approach, lift, lowering, retreat) has been checked on one branch of inverse kinematics; the searches for the free
 //! motions in between draw their goals from it (thesis sections 3.1 and 3.2).
 
+mod carrying;
 mod certify;
 mod destinations;
 mod driving;
+mod folding;
 mod free_motion;
 mod maker;
 mod opening;
 mod options;
+mod pick_up;
 mod picks;
+mod places;
 mod placings;
 mod plan;
 mod problem;
+mod put_down;
 mod ranking;
 mod rejections;
 mod sequence;

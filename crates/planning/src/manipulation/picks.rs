@@ -26,8 +26,17 @@ pub(super) struct Pick {
     pub(super) approach: Vec<Vec<f64>>,
     /// From the grasp upwards.
     pub(super) lift: Vec<Vec<f64>>,
-    /// One way to put the object down.
-    pub(super) placing: Placing,
+    /// One way to put the object down from where the robot stands.
+    pub(super) placing: Option<Placing>,
+}
+
+/// What becomes of the object once it is lifted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Lifted {
+    /// The arm puts it down from where the robot stands.
+    PutDown,
+    /// The base takes it to where it can be put down.
+    TakenAway,
 }
 
 /// The state of a search for picks of one object.
@@ -39,6 +48,7 @@ pub(super) struct PickSampler<'a, 's> {
     /// The robot before the pick.
     pub(super) q: Configuration,
     pub(super) tilt: Option<f64>,
+    pub(super) lifted: Lifted,
     pub(super) rng: Rng,
     /// Grasps still in question, by rank.
     pub(super) alive: Vec<usize>,
@@ -64,6 +74,7 @@ impl<'a, 's> PickSampler<'a, 's> {
         destinations: &'s mut Destinations,
         q: &Configuration,
         tilt: Option<f64>,
+        lifted: Lifted,
         rng: Rng,
     ) -> Self {
         Self {
@@ -73,6 +84,7 @@ impl<'a, 's> PickSampler<'a, 's> {
             destinations,
             q: q.clone(),
             tilt,
+            lifted,
             rng,
             alive: ranking(&cx.problem, cx.gripper(), scene, cx.body(), set),
             looked_at: 0,
@@ -172,6 +184,12 @@ impl<'a, 's> PickSampler<'a, 's> {
             .map_err(because(Filter::Lift))?;
         let lift = raise(&cx, self.scene, &closed, at, &rules).map_err(because(Filter::Lift))?;
 
+        if self.lifted == Lifted::TakenAway {
+            return match self.somewhere_free(grasp) {
+                true => Ok(Pick { grasp: index, approach, lift, placing: None }),
+                false => Err((Filter::Destination, None)),
+            };
+        }
         let upright = self.tilt.map(|tilt| upright(&cx, grasp, tilt));
         let mut placings = placings(&cx, self.scene, grasp, &lift[lift.len() - 1], &self.q);
         placings.constraint = upright.as_ref().map(|u| u as _);
@@ -190,9 +208,25 @@ impl<'a, 's> PickSampler<'a, 's> {
             }
         }
         match placings.found.pop() {
-            Some(placing) => Ok(Pick { grasp: index, approach, lift, placing }),
+            Some(placing) => Ok(Pick { grasp: index, approach, lift, placing: Some(placing) }),
             None => Err((Filter::Destination, None)),
         }
+    }
+
+    /// Whether the object and the gripper, without the arm, are free at one destination at least.
+    fn somewhere_free(&mut self, grasp: &Grasp) -> bool {
+        let Self { cx, scene, destinations, rejections, .. } = self;
+        (0..destinations.counts()[0]).any(|index| {
+            let world_from_tool = destinations.pose(index) * grasp.object_from_tool;
+            let Some(there) = destinations.scene(index, cx, scene, rejections) else { return false };
+            match hand_is_free(cx, there, grasp, &world_from_tool) {
+                Ok(()) => true,
+                Err(cause) => {
+                    rejections.add_because(Filter::HandAtDestination, cause);
+                    false
+                }
+            }
+        })
     }
 }
 

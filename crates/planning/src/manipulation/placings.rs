@@ -16,6 +16,7 @@ use crate::grasp::Grasp;
 use crate::scene::Scene;
 
 /// The destinations of a goal, with what is known of them whatever the grasp.
+#[derive(Clone)]
 pub(super) struct Destinations {
     poses: Vec<Pose>,
     /// The scene with the object there; `None` while unknown, `Some(None)` when the place is occupied.
@@ -33,7 +34,13 @@ impl Destinations {
         [self.poses.len(), self.scenes.iter().filter(|scene| scene.is_some()).count()]
     }
 
-    fn scene(
+    /// `world_from_object` of one of them.
+    pub(super) fn pose(&self, index: usize) -> &Pose {
+        &self.poses[index]
+    }
+
+    /// The scene with the object there; `None` when the place is occupied.
+    pub(super) fn scene(
         &mut self,
         index: usize,
         cx: &GoalContext<'_>,

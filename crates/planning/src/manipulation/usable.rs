@@ -5,7 +5,7 @@ use robotc_core::{Pose, Seed};
 
 use super::destinations::destination_poses;
 use super::options::ManipulationOptions;
-use super::picks::PickSampler;
+use super::picks::{Lifted, PickSampler};
 use super::placings::Destinations;
 use super::plan::Tried;
 use super::problem::{GoalContext, Manipulation, finger_space, gripper_links};
@@ -74,18 +74,22 @@ pub fn usable_grasps(
     let poses = destination_poses(destination, options.destinations, &mut seed.split("destination").rng());
     let mut destinations = Destinations::new(poses);
     let (scene, set, rng) = (problem.scene, problem.grasps[*object], seed.split("grasps").rng());
-    let mut sampler = PickSampler::new(cx, scene, set, &mut destinations, problem.start, *keep_upright, rng);
+    let (q, tilt, lifted) = (problem.start, *keep_upright, Lifted::PutDown);
+    let mut sampler = PickSampler::new(cx, scene, set, &mut destinations, q, tilt, lifted, rng);
     let mut exhausted = false;
     while sampler.found.len() < most && !exhausted {
         exhausted = sampler.draw(budget)? == GoalDraw::Exhausted;
     }
     let first = |path: &[Vec<f64>]| path[0].clone();
-    let found = sampler.found.iter().map(|pick| UsableGrasp {
-        grasp: pick.grasp,
-        approach: first(&pick.approach),
-        at_grasp: first(&pick.lift),
-        world_from_object: pick.placing.world_from_object,
-        at_destination: first(&pick.placing.retreat),
+    let found = sampler.found.iter().filter_map(|pick| {
+        let placing = pick.placing.as_ref()?;
+        Some(UsableGrasp {
+            grasp: pick.grasp,
+            approach: first(&pick.approach),
+            at_grasp: first(&pick.lift),
+            world_from_object: placing.world_from_object,
+            at_destination: first(&placing.retreat),
+        })
     });
     let found = found.collect();
     let (tried, rejections) = (sampler.tried(), sampler.rejections.clone());

@@ -6,6 +6,7 @@ use robotc_core::{Configuration, DofIdx, Kinematics, LinkIdx, Seed};
 use serde::{Deserialize, Serialize};
 
 use crate::budget::{Budget, Interrupt};
+use crate::constraint::Constraint;
 use crate::edge::EdgeChecker;
 use crate::goal::{GoalDraw, GoalSampler};
 use crate::jitter::Ball;
@@ -93,6 +94,7 @@ pub struct NavigationPosture<'a, C: ?Sized> {
     /// How far a configuration is outside of the prism.
     excess: &'a dyn Fn(&[f64]) -> f64,
     preset: Vec<f64>,
+    constraint: Option<&'a dyn Constraint>,
     options: PostureOptions,
     rng: Rng,
     /// Samples looked at so far.
@@ -112,8 +114,19 @@ impl<'a, C: EdgeChecker + ?Sized> NavigationPosture<'a, C> {
         options: PostureOptions,
         seed: Seed,
     ) -> Self {
-        let preset = preset.to_vec();
-        Self { checker, excess, preset, options, rng: seed.rng(), sampled: 0, outside: 0, blocked: 0 }
+        let (preset, rng) = (preset.to_vec(), seed.rng());
+        Self { checker, excess, preset, constraint: None, options, rng, sampled: 0, outside: 0, blocked: 0 }
+    }
+
+    /// The same sampler of postures that satisfy a constraint: a cup that is held upright.
+    pub fn with_constraint(self, constraint: Option<&'a dyn Constraint>) -> Self {
+        Self { constraint, ..self }
+    }
+
+    /// Moves a configuration into the limits and onto the constraint; `false` when it cannot be.
+    fn settle(&self, q: &mut [f64]) -> bool {
+        self.checker.space().clamp(q);
+        self.constraint.is_none_or(|c| c.project(q) && self.checker.space().contains(q))
     }
 
     /// Moves a configuration into the prism, one coordinate at a time.
@@ -127,9 +140,9 @@ impl<'a, C: EdgeChecker + ?Sized> NavigationPosture<'a, C> {
             let coordinate = self.rng.below(q.len());
             let mut moved = q.clone();
             moved[coordinate] += self.rng.range(-reach, reach);
-            self.checker.space().clamp(&mut moved);
+            let settled = self.settle(&mut moved);
             let then = (self.excess)(&moved);
-            if then < excess {
+            if settled && then < excess {
                 (*q, excess) = (moved, then);
             } else {
                 // Near the minimum of a coordinate only short steps help.
@@ -153,8 +166,7 @@ impl<C: EdgeChecker + ?Sized> GoalSampler for NavigationPosture<'_, C> {
             let radius = self.options.smallest + share * (self.options.largest - self.options.smallest);
             q = Ball::new(&*self.checker).within(&*self.checker, &q, radius, &mut self.rng);
         }
-        self.checker.space().clamp(&mut q);
-        if !self.descend(&mut q) {
+        if !self.settle(&mut q) || !self.descend(&mut q) {
             self.outside += 1;
             return Ok(GoalDraw::Pending);
         }

@@ -20,6 +20,8 @@ use crate::grasp::{Grasp, GraspSet};
 use crate::scene::{RobotChecker, Rules, Scene};
 use crate::testbed;
 
+mod driving;
+
 /// Top of the table.
 const TABLE: f64 = 0.125;
 const SIZE: [f64; 3] = [0.05, 0.05, 0.12];
@@ -438,37 +440,4 @@ fn the_first_usable_grasp_of_a_thousand_is_found_without_looking_at_the_others()
         assert!(off(&usable.at_grasp, &bench.task.objects[0].world_from_object) < 1e-6);
         assert!(off(&usable.at_destination, &usable.world_from_object) < 1e-6);
     }
-}
-
-#[test]
-fn what_is_out_of_reach_is_driven_to() {
-    let ik = || Arc::new(testbed::ClosedForm { rail: false });
-    let moves = [([3.0, -0.2], anywhere([3.0, 0.2], 0.3))];
-    // A wall in between that ends on the right.
-    let wall = ([0.1, 3.0, 0.6], [1.5, 1.0, 0.3]);
-    let mobile = testbed::mobile_robot();
-    let arm = testbed::arm_of(&mobile, ik());
-    let mobile = bench_of(mobile, arm, 3.0, &moves, &[wall]);
-    for seed in 0..3 {
-        let plan = run(&mobile, seed, &Budget::unlimited()).unwrap_or_else(|e| panic!("{e}"));
-        assert!(plan.is_complete());
-        let kinds: Vec<SegmentKind> = plan.segments.iter().map(|s| s.kind).collect();
-        use SegmentKind::*;
-        // At rest the arm is above the footprint already.
-        assert_eq!(kinds, [Drive, Reach, Approach, Grasp, Lift, Carry, Lower, Release, Retreat]);
-        let drive = &plan.segments[0].trajectory;
-        assert!(drive.start() == [0.0; 3] && drive.end()[0] > 1.5, "behind the wall: {:?}", drive.end());
-        let beside = |y: f64| !(-0.5..=2.5).contains(&y);
-        assert!(drive.knots().iter().any(|knot| beside(knot.positions[1])), "round it");
-    }
-    // The same arm, bolted down.
-    let fixed = bench_of(testbed::robot(false), testbed::arm(false), 3.0, &moves, &[wall]);
-    let failure = run(&fixed, 0, &Budget::unlimited()).unwrap_err().to_string();
-    assert!(failure.contains("grasp out of reach"), "{failure}");
-    // Within reach nothing drives.
-    let robot = testbed::mobile_robot();
-    let arm = testbed::arm_of(&robot, ik());
-    let near = bench_of(robot, arm, 0.7, &[([0.6, -0.2], anywhere([0.6, 0.2], 0.3))], &[]);
-    let plan = run(&near, 0, &Budget::unlimited()).unwrap();
-    assert!(plan.segments.iter().all(|s| s.kind != SegmentKind::Drive));
 }
