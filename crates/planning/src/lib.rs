@@ -4,6 +4,7 @@
 
 pub mod arm;
 pub mod bench;
+pub mod beside;
 pub mod bispace;
 pub mod budget;
 pub mod caging;
@@ -39,6 +40,7 @@ pub mod travel;
 mod tree;
 
 pub use arm::{ArmError, ArmModel};
+pub use beside::{Beside, Difference};
 pub use budget::{Budget, Interrupt};
 pub use cartesian::{LineFailure, LineObstacle, LineOptions, cartesian_line};
 pub use certify::{Unproven, certify_path};
