@@ -1324,6 +1324,8 @@ static void ik_six(const double numbers[57], double slack, ik_candidates *found)
 typedef struct {
     double a[IK_NODES];
     double centre, half, largest;
+    /* Largest sample of that third of the samples where they are smallest, as part of the largest one of all. */
+    double even;
 } ik_piece;
 
 /* Cosines of the multiples of the angle between half a node and the next. */
@@ -1340,7 +1342,16 @@ static void ik_cosines(double table[4 * IK_NODES])
 /* From the samples to the coefficients, for the interval of this width from `start` on. */
 static void ik_piece_of(const double table[4 * IK_NODES], double start, double width, const double samples[IK_NODES], ik_piece *piece)
 {
+    double least = 1.7976931348623157e308, most = 0.0, size;
     int j, k;
+    for (j = 0; j < IK_NODES; j += IK_NODES / 3 + 1) {
+        size = 0.0;
+        for (k = j; k < IK_NODES && k < j + IK_NODES / 3 + 1; k++)
+            if (ik_abs(samples[k]) > size) size = ik_abs(samples[k]);
+        if (size < least) least = size;
+        if (size > most) most = size;
+    }
+    piece->even = least / most;
     piece->half = 0.5 * width;
     piece->centre = start + piece->half;
     piece->largest = 0.0;
@@ -1472,6 +1483,8 @@ typedef struct {
     int before;
     int is_constant;
     ik_shadow shadow;
+    /* Values where there are roots in an order whatever the goal, and how many, zero for none. */
+    double places[2][2];
 } ik_swept;
 
 /* A motion after another. */
@@ -1586,17 +1599,33 @@ static void ik_add_swept(const ik_loop *loop, const ik_turn pair[2], double x, i
 /* Adds the candidates of one interval; says whether its roots lie apart. They may be so far from real ones. */
 static int ik_look_at_piece(const ik_swept *swept, int code, const double *table, const ik_piece *piece, double unreal, int zooms, ik_candidates *found)
 {
-    double roots[IK_SIZE][2], tight = 0.05 * piece->half, margin = IK_NEARLY_REAL + unreal;
-    int count = ik_roots_of_piece(piece, margin, tight > margin ? tight : margin, roots), done[IK_SIZE] = { 0 }, near[IK_SIZE];
+    double roots[IK_SIZE][2], tight = 0.05 * piece->half, reach = 0.125 * piece->half, margin = IK_NEARLY_REAL + unreal;
+    /* Seen from nearby roots are told apart that were one. */
+    double together_at = tight < 3e-3 ? tight : 3e-3;
+    int count = ik_roots_of_piece(piece, margin, reach > margin ? reach : margin, roots), done[IK_SIZE] = { 0 }, near[IK_SIZE];
     int apart = 1, together, pairs_found, all, i, j;
     ik_turn still = ik_turn_of(1.0, 0.0), pairs[6][2];
     ik_loop loop;
     ik_six_rows six;
+    ik_piece inner;
     /* Where the five others lose a freedom at some value, whatever the goal, the determinant has a root of a high order there, which hides
-       others beside it: it is looked at alone. */
+       others beside it: it is looked at alone. As many roots as always are none of a solution. */
+    for (i = 0; i < 2; i++) {
+        double place = swept->places[i][0], order = swept->places[i][1];
+        if (!(order > 0.0) || zooms == 0 || !(ik_abs(place - piece->centre) <= piece->half + reach)) continue;
+        together = 0;
+        for (j = 0; j < count; j++)
+            if (ik_abs(roots[j][0] - place) + ik_abs(roots[j][1]) < reach) {
+                together++;
+                done[j] = 1;
+            }
+        if (together != (int)order) {
+            ik_piece_at(swept, code, table, place - reach, 2.0 * reach, &inner);
+            apart &= ik_look_at_piece(swept, code, table, &inner, unreal, zooms - 1, found);
+        }
+    }
     for (i = 0; i < count; i++) {
-        double centre = 0.0, width = 2.0 * 0.125 * piece->half;
-        ik_piece inner;
+        double centre = 0.0;
         together = 0;
         for (j = 0; j < count; j++) {
             near[j] = ik_abs(roots[j][0] - roots[i][0]) + ik_abs(roots[j][1] - roots[i][1]) < tight;
@@ -1605,9 +1634,9 @@ static int ik_look_at_piece(const ik_swept *swept, int code, const double *table
                 centre += roots[j][0];
             }
         }
-        if (done[i] || together < 3 || zooms == 0) continue;
+        if (done[i] || ik_abs(roots[i][1]) > tight || together < 3 || zooms == 0) continue;
         for (j = 0; j < count; j++) done[j] |= near[j];
-        ik_piece_at(swept, code, table, centre / (double)together - 0.5 * width, width, &inner);
+        ik_piece_at(swept, code, table, centre / (double)together - reach, 2.0 * reach, &inner);
         ik_look_at_piece(swept, code, table, &inner, unreal, zooms - 1, found);
         /* What lies so near to others may be clearer in another order. */
         apart = 0;
@@ -1617,7 +1646,7 @@ static int ik_look_at_piece(const ik_swept *swept, int code, const double *table
         if (done[i] || ik_abs(imaginary) > margin) continue;
         together = 0;
         for (j = 0; j < count; j++) {
-            near[j] = !done[j] && ik_abs(roots[j][1]) <= margin && ik_abs(roots[j][0] - x) + ik_abs(roots[j][1] - imaginary) < 3e-3;
+            near[j] = !done[j] && ik_abs(roots[j][1]) <= margin && ik_abs(roots[j][0] - x) + ik_abs(roots[j][1] - imaginary) < together_at;
             if (near[j]) {
                 together++;
                 sum += roots[j][0];
@@ -1650,13 +1679,14 @@ static int ik_look_at_piece(const ik_swept *swept, int code, const double *table
     return apart;
 }
 
-/* Adds the candidates of one order; says whether they are all that there are. */
-static int ik_sweep_order(ik_swept *swept, int code, double low, double high, double slack, ik_candidates *found)
+/* Adds the candidates of one order, its code and one and its places; says whether they are all that there are. */
+static int ik_sweep_order(ik_swept *swept, const double numbers[5], double low, double high, double slack, ik_candidates *found)
 {
     double table[4 * IK_NODES], whole = high - low, at = low, width = whole / 16.0, before = 1.7976931348623157e308, rest;
     ik_piece piece;
-    int all = 1, resolved, round;
+    int code = ((int)numbers[0] - 1) % 24, all = 1, resolved, round;
     ik_cosines(table);
+    for (round = 0; round < 4; round++) swept->places[round / 2][round % 2] = numbers[1 + round];
     swept->is_constant = swept->before == ik_still_joint(code);
     if (swept->is_constant) {
         ik_loop loop = ik_swept_loop(swept, 0.0, code);
@@ -1666,8 +1696,9 @@ static int ik_sweep_order(ik_swept *swept, int code, double low, double high, do
         ik_piece_at(swept, code, table, at, width, &piece);
         rest = ik_rest_of_piece(&piece);
         resolved = rest < 1e-9 * piece.largest;
-        /* Half an interval that is no better than the whole one shows rounding. */
-        if (!resolved && rest < 0.1 * before && width > (1.0 / 16384.0) * whole) {
+        /* Half an interval that is no better than the whole one shows rounding. On an interval with a third on which the function is small
+           everywhere roots may be lost in it. */
+        if ((piece.even < 1e-3 || (!resolved && rest < 0.1 * before)) && width > (1.0 / 16384.0) * whole) {
             before = rest;
             width *= 0.5;
             continue;
@@ -1677,7 +1708,7 @@ static int ik_sweep_order(ik_swept *swept, int code, double low, double high, do
         if (at > high - (1.0 / 16384.0) * whole) return all;
         before = 1.7976931348623157e308;
         if (!resolved) width *= 2.0;
-        else if (rest < 1e-3 * 1e-9 * piece.largest) width *= 1.5;
+        else if (rest < 1e-3 * 1e-9 * piece.largest && piece.even > 30.0 * 1e-3) width *= 1.5;
         if (width > high - at) width = high - at;
     }
     return 0;
@@ -1685,9 +1716,9 @@ static int ik_sweep_order(ik_swept *swept, int code, double low, double high, do
 
 /* Candidates for the joints of a loop: the five unknown turns in order, then the swept variable, as cosine and sine or as a length. The
    numbers are, for each joint, the direction of its line, a point on it, how it moves and how far; rows of the goal's rotation, its place;
-   three orders as their code and one, zero for none; and where the variable is looked for: zero for a length, one for an angle of which a
+   three orders as their code and one, zero for none, each with two places and how many roots are there whatever the goal; and where the variable is looked for: zero for a length, one for an angle of which a
    full turn changes nothing, two for other angles. Slack is for poses at which that gave nothing, as in six joints. */
-static void ik_sweep(const double numbers[88], double slack, ik_candidates *found)
+static void ik_sweep(const double numbers[100], double slack, ik_candidates *found)
 {
     ik_swept swept;
     ik_line ends;
@@ -1696,7 +1727,7 @@ static void ik_sweep(const double numbers[88], double slack, ik_candidates *foun
     /* How many of the five come before the first swept joint and before the last one. */
     int unknown = 0, first = 6, last = 0, i;
     found->count = 0;
-    for (i = 0; i < 88; i++)
+    for (i = 0; i < 100; i++)
         if (!ik_finite(numbers[i])) return;
     swept.origin = ik_half_of(&numbers[3]);
     for (i = 0; i < IK_MOST_LINES; i++) {
@@ -1716,10 +1747,10 @@ static void ik_sweep(const double numbers[88], double slack, ik_candidates *foun
     for (i = 0; i < 3; i++) swept.goal.rows[i] = ik_half_of(&numbers[72 + 3 * i]);
     swept.goal.place = ik_half_of(&numbers[81]);
     if (slack > 0.0) swept.goal = ik_nudged(&swept.goal, 0.1 * slack);
-    swept.turns = numbers[87] > 0.0;
+    swept.turns = numbers[99] > 0.0;
     low = -3.141592653589793;
     high = 3.141592653589793;
-    if (swept.turns && numbers[87] < 2.0) {
+    if (swept.turns && numbers[99] < 2.0) {
         low = 0.2137 - 3.141592653589793;
         high = 0.2137 + 3.141592653589793;
     }
@@ -1742,8 +1773,8 @@ static void ik_sweep(const double numbers[88], double slack, ik_candidates *foun
         high = 1.01 * (sum + ik_sqrt(ik_dot(d, d))) / ratio;
         low = -high;
     }
-    for (i = 84; i < 87; i++)
-        if (numbers[i] > 0.0 && ik_sweep_order(&swept, ((int)numbers[i] - 1) % 24, low, high, slack, found) && !(slack > 0.0) && found->count > 0)
+    for (i = 84; i < 99; i += 5)
+        if (numbers[i] >= 1.0 && ik_sweep_order(&swept, &numbers[i], low, high, slack, found) && !(slack > 0.0) && found->count > 0)
             break;
 }
 

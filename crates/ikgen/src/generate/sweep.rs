@@ -13,11 +13,25 @@ use super::problem::{OFF_ZERO, goal_of};
 use super::strategies::Line as Symbolic;
 use crate::kernel::math::cos_sin;
 use crate::kernel::six::ORDERS;
-use crate::kernel::sweep::{MOST_LINES, MOST_ORDERS, NUMBERS, still_joint, sweep_of};
+use crate::kernel::sweep::{
+    MOST_LINES, MOST_ORDERS, MOST_PLACES, NUMBERS, ORDER_NUMBERS, clusters_of, fall_of, still_joint, sweep_of,
+};
 use crate::kernel::vector::{Line, Motion, times};
 
 /// Poses on which all orders are tried, and those that miss fewest once more.
 const POSES: [usize; 2] = [2, 8];
+
+/// Poses at which there must be roots where there are some whatever the goal.
+const WITNESSES: usize = 7;
+
+/// Distances, in lengths or angles, from which it is seen how many they are.
+const DISTANCE: f64 = 1e-2;
+
+/// Places are written to this: rounding has moved them.
+const ROUND: f64 = 1e-9;
+
+/// More roots at one place are not told apart from others by their number: rounding scatters them.
+const MOST_ROOTS: f64 = 6.0;
 
 /// Unknown turns beside the swept variable.
 const TURNS: usize = 5;
@@ -67,7 +81,11 @@ pub(super) fn write(facts: &Facts, free: &[usize], b: &Builder) -> Result<String
     }
     let place = given.iter().fold(Vector([zero; 3]), |p, (axis, step)| step.back().apply(b, axis, p));
     args.extend(goal.apply(b, place).0);
-    args.extend(plan.last_numbers(&orders).map(|x| b.constant(x)));
+    let mut last = plan.last_numbers(&orders);
+    for (numbers, code) in last.chunks_mut(ORDER_NUMBERS).zip(&orders) {
+        numbers[1..].copy_from_slice(&plan.places(*code));
+    }
+    args.extend(last.map(|x| b.constant(x)));
 
     let mut names: Vec<String> = plan.turns.iter().map(|v| (v + 1).to_string()).collect();
     names.push((plan.swept + 1).to_string());
@@ -202,13 +220,13 @@ impl Plan {
         Ok(Self { axes, turns, swept, slides, whole, moved, variables, added })
     }
 
-    /// Orders and kind of the swept variable, as the kernel takes them.
-    fn last_numbers(&self, orders: &[usize]) -> [f64; MOST_ORDERS + 1] {
-        let mut numbers = [0.0; MOST_ORDERS + 1];
-        for (number, code) in numbers.iter_mut().zip(orders) {
-            *number = (code + 1) as f64;
+    /// Orders and kind of the swept variable, as the kernel takes them, without any places.
+    fn last_numbers(&self, orders: &[usize]) -> LastNumbers {
+        let mut numbers = [0.0; LAST];
+        for (numbers, code) in numbers.chunks_mut(ORDER_NUMBERS).zip(orders) {
+            numbers[0] = (code + 1) as f64;
         }
-        numbers[MOST_ORDERS] = if self.slides {
+        numbers[LAST - 1] = if self.slides {
             0.0
         } else if self.whole {
             1.0
@@ -216,6 +234,30 @@ impl Plan {
             2.0
         };
         numbers
+    }
+
+    /// Values of the swept variable where the determinant of an order has roots whatever the goal, because the five others lose a freedom
+    /// there: each with how many, zero for none.
+    fn places(&self, code: usize) -> [f64; 2 * MOST_PLACES] {
+        let mut rng = Seed::new(0).split("ikgen sweep places").rng();
+        let last = self.last_numbers(&[code]);
+        let trials: Vec<[f64; NUMBERS]> =
+            (0..WITNESSES).map(|_| self.trial(&mut rng).numbers_with(last)).collect();
+        let mut found: Vec<[f64; 2]> = Vec::new();
+        let mut candidates: Vec<f64> = Vec::new();
+        clusters_of(&trials[0], |place| candidates.push(place));
+        for place in candidates {
+            let mut roots: Vec<f64> = trials[1..].iter().map(|t| fall_of(t, place, DISTANCE)).collect();
+            roots.sort_by(f64::total_cmp);
+            let usual = roots[roots.len() / 2];
+            let new = found.iter().all(|[other, _]| (other - place).abs() > DISTANCE);
+            if new && roots[1] >= 1.0 && (1.0..=MOST_ROOTS).contains(&usual) {
+                found.push([(place / ROUND).round() * ROUND, usual]);
+            }
+        }
+        found.sort_by(|a, b| b[1].total_cmp(&a[1]));
+        found.resize(MOST_PLACES, [0.0; 2]);
+        std::array::from_fn(|i| found[i / 2][i % 2])
     }
 
     /// The orders that find random joint vectors again, best first: those that miss fewest, then those where the joint that does not turn
@@ -289,18 +331,28 @@ impl Plan {
     }
 }
 
+/// How many numbers come after the goal.
+const LAST: usize = MOST_ORDERS * ORDER_NUMBERS + 1;
+
+type LastNumbers = [f64; LAST];
+
 struct Trial {
     numbers: [f64; NUMBERS],
     wanted: Vec<[f64; 2]>,
 }
 
 impl Trial {
-    /// Whether the joint vector is among the candidates.
-    fn is_found(&self, last: [f64; MOST_ORDERS + 1]) -> bool {
-        const NEAR: f64 = 1e-6;
+    /// The loop with what the kernel takes last.
+    fn numbers_with(&self, last: LastNumbers) -> [f64; NUMBERS] {
         let mut numbers = self.numbers;
-        numbers[NUMBERS - last.len()..].copy_from_slice(&last);
-        let found = sweep_of(&numbers, 0.0);
+        numbers[NUMBERS - LAST..].copy_from_slice(&last);
+        numbers
+    }
+
+    /// Whether the joint vector is among the candidates.
+    fn is_found(&self, last: LastNumbers) -> bool {
+        const NEAR: f64 = 1e-6;
+        let found = sweep_of(&self.numbers_with(last), 0.0);
         let gap = |i: usize| {
             let pairs = found.get(i).into_iter().zip(&self.wanted);
             pairs.map(|(a, b)| (a[0] - b[0]).abs().max((a[1] - b[1]).abs())).fold(0.0, f64::max)

@@ -34,6 +34,8 @@ pub struct Piece {
     pub half: f64,
     /// Largest coefficient in magnitude.
     pub largest: f64,
+    /// Largest sample in magnitude of that third of the samples where they are smallest, as part of the largest one of all.
+    pub even: f64,
 }
 
 impl Piece {
@@ -45,6 +47,15 @@ impl Piece {
         for (k, sample) in samples.iter_mut().enumerate() {
             *sample = value(centre + half * table[2 * k + 1]);
         }
+        let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+        for third in samples.chunks(NODES / 3 + 1) {
+            let mut size = 0.0f64;
+            for sample in third {
+                size = size.max(sample.abs());
+            }
+            least = least.min(size);
+            most = most.max(size);
+        }
         let mut a = [0.0; NODES];
         let mut largest = 0.0f64;
         for (j, x) in a.iter_mut().enumerate() {
@@ -54,7 +65,12 @@ impl Piece {
             *x *= if j == 0 { 1.0 } else { 2.0 } / NODES as f64;
             largest = largest.max(x.abs());
         }
-        Piece { a, centre, half, largest }
+        Piece { a, centre, half, largest, even: least / most }
+    }
+
+    /// Whether a value is on the interval, or as near to it as `margin`.
+    pub fn reaches(&self, value: f64, margin: f64) -> bool {
+        (value - self.centre).abs() <= self.half + margin
     }
 
     /// The last coefficients: what the polynomial may be off.

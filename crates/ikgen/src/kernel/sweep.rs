@@ -22,9 +22,15 @@ pub const MOST_ORDERS: usize = 3;
 
 /// Numbers that [`sweep_of`] takes: for each joint the direction of its line, a point on it, how it moves (zero for none, one for an
 /// unknown turn, two and three for a turn and a slide by the swept variable), and how far for each unit of that; rows of the goal's
-/// rotation, its place; orders as their code and one, zero for none; and where the variable is looked for (zero for a length, one for an
-/// angle of which a full turn changes nothing, two for other angles).
-pub const NUMBERS: usize = 8 * MOST_LINES + 12 + MOST_ORDERS + 1;
+/// rotation, its place; each order as its code and one, zero for none, and its [places](MOST_PLACES) with how many roots are at each; and
+/// where the variable is looked for (zero for a length, one for an angle of which a full turn changes nothing, two for other angles).
+pub const NUMBERS: usize = 8 * MOST_LINES + 12 + MOST_ORDERS * ORDER_NUMBERS + 1;
+
+/// Most places of an order: values where the determinant has several roots, whatever the goal.
+pub const MOST_PLACES: usize = 2;
+
+/// Numbers that say what there is to know of an order.
+pub const ORDER_NUMBERS: usize = 1 + 2 * MOST_PLACES;
 
 /// Intervals at first.
 const INTERVALS: f64 = 16.0;
@@ -40,6 +46,10 @@ const RESOLVED: f64 = 1e-9;
 
 /// Half an interval has coefficients of rounding, if they are not smaller than this part of those of the whole one.
 const ROUNDING: f64 = 0.1;
+
+/// On an interval with a third on which the function is nowhere larger than this part of the largest value, roots of that third may be
+/// lost in rounding.
+const EVEN: f64 = 1e-3;
 
 /// Roots that are nearer to each other than this part of half an interval, three or more, are looked at alone. Where the five others lose
 /// a freedom at some value, whatever the goal, the determinant has a root of a high order there, which hides others beside it.
@@ -108,11 +118,25 @@ impl Loop {
 struct Ordered<'a> {
     loop_: &'a Loop,
     code: usize,
+    /// Values where there are roots whatever the goal, and how many, zero for none.
+    places: [[f64; 2]; MOST_PLACES],
     /// The right side of the equations, where it does not change: the joint that does not turn is where the swept one is.
     constant: Option<Shadow>,
 }
 
-impl Ordered<'_> {
+impl<'a> Ordered<'a> {
+    /// From the numbers of an order.
+    fn new(loop_: &'a Loop, numbers: &[f64]) -> Self {
+        let code = (numbers[0] as usize - 1) % ORDERS;
+        let mut places = [[0.0; 2]; MOST_PLACES];
+        for (i, place) in places.iter_mut().enumerate() {
+            *place = [numbers[2 * i + 1], numbers[2 * i + 2]];
+        }
+        let constant =
+            (loop_.before == Some(still_joint(code))).then(|| loop_.shadow(&loop_.arranged(0.0, code)));
+        Ordered { loop_, code, places, constant }
+    }
+
     fn eliminated(&self, x: f64) -> (Arranged, Six, f64) {
         let loop_ = self.loop_.arranged(x, self.code);
         let measure = &self.loop_.measure;
@@ -139,33 +163,29 @@ pub fn still_joint(code: usize) -> usize {
     if code >= 12 { 5 - place } else { place }
 }
 
-/// Adds the candidates of one order; says whether they are all that there are.
-fn solve(loop_: &Loop, code: usize, span: [f64; 2], turns: bool, slack: f64, found: &mut Candidates) -> bool {
-    let table: Cosines = cosines();
-    let constant =
-        (loop_.before == Some(still_joint(code))).then(|| loop_.shadow(&loop_.arranged(0.0, code)));
-    let ordered = Ordered { loop_, code, constant };
+/// Visits the intervals of an order, one after the other, each with whether the polynomial is the function; says whether these are all.
+fn walk(ordered: &Ordered<'_>, table: &Cosines, span: [f64; 2], mut visit: impl FnMut(&Piece, bool)) -> bool {
     let whole = span[1] - span[0];
     let (mut at, mut width) = (span[0], whole / INTERVALS);
-    let (mut all, mut before) = (true, f64::MAX);
+    let mut before = f64::MAX;
     for _ in 0..MOST_INTERVALS {
-        let piece = Piece::new(&table, at, width, |x| ordered.value(x));
+        let piece = Piece::new(table, at, width, |x| ordered.value(x));
         let rest = piece.rest();
         let resolved = rest < RESOLVED * piece.largest;
-        if !resolved && rest < ROUNDING * before && width > SHORTEST * whole {
+        if (piece.even < EVEN || !resolved && rest < ROUNDING * before) && width > SHORTEST * whole {
             before = rest;
             width *= 0.5;
             continue;
         }
-        all &= look(&ordered, &table, &piece, turns, 5.0 * sqrt(slack), ZOOMS, found) && resolved;
+        visit(&piece, resolved);
         at += width;
         if at > span[1] - SHORTEST * whole {
-            return all;
+            return true;
         }
         before = f64::MAX;
         if !resolved {
             width *= 2.0;
-        } else if rest < 1e-3 * RESOLVED * piece.largest {
+        } else if rest < 1e-3 * RESOLVED * piece.largest && piece.even > 30.0 * EVEN {
             width *= 1.5;
         }
         if width > span[1] - at {
@@ -187,11 +207,34 @@ fn look(
 ) -> bool {
     const STILL: [f64; 2] = [1.0, 0.0];
     let tight = CLUSTER * piece.half;
+    let reach = ZOOM * piece.half;
     let margin = NEARLY_REAL + unreal;
+    // Seen from nearby roots are told apart that were one.
+    let together_at = if tight < APART { tight } else { APART };
     let mut roots = [[0.0; 2]; MAX_SIZE];
-    let count = piece.roots(margin, if tight > margin { tight } else { margin }, &mut roots);
+    let count = piece.roots(margin, if reach > margin { reach } else { margin }, &mut roots);
     let mut done = [false; MAX_SIZE];
     let mut apart = true;
+    let zoom = |centre: f64, found: &mut Candidates| {
+        let inner = Piece::new(table, centre - reach, 2.0 * reach, |x| ordered.value(x));
+        look(ordered, table, &inner, turns, unreal, zooms - 1, found)
+    };
+    for [place, order] in ordered.places {
+        if !(order > 0.0) || zooms == 0 || !piece.reaches(place, reach) {
+            continue;
+        }
+        let mut cluster = 0;
+        for (j, [other, height]) in roots[..count].iter().enumerate() {
+            if (other - place).abs() + height.abs() < reach {
+                cluster += 1;
+                done[j] = true;
+            }
+        }
+        // As many as always are none of a solution.
+        if cluster != order as usize {
+            apart &= zoom(place, found);
+        }
+    }
     for i in 0..count {
         let [x, imaginary] = roots[i];
         let (mut cluster, mut centre) = (0, 0.0);
@@ -201,15 +244,13 @@ fn look(
                 centre += other;
             }
         }
-        if done[i] || cluster < 3 || zooms == 0 {
+        if done[i] || imaginary.abs() > tight || cluster < 3 || zooms == 0 {
             continue;
         }
         for (j, [other, height]) in roots[..count].iter().enumerate() {
             done[j] |= (other - x).abs() + (height - imaginary).abs() < tight;
         }
-        let width = 2.0 * ZOOM * piece.half;
-        let inner = Piece::new(table, centre / cluster as f64 - 0.5 * width, width, |x| ordered.value(x));
-        look(ordered, table, &inner, turns, unreal, zooms - 1, found);
+        zoom(centre / cluster as f64, found);
         // What lies so near to others may be clearer in another order.
         apart = false;
     }
@@ -221,8 +262,9 @@ fn look(
         let (mut together, mut sum) = (0, 0.0);
         let mut near = [false; MAX_SIZE];
         for (j, [other, height]) in roots[..count].iter().enumerate() {
-            near[j] =
-                !done[j] && height.abs() <= margin && (other - x).abs() + (height - imaginary).abs() < APART;
+            near[j] = !done[j]
+                && height.abs() <= margin
+                && (other - x).abs() + (height - imaginary).abs() < together_at;
             if near[j] {
                 together += 1;
                 sum += other;
@@ -281,18 +323,21 @@ fn add(loop_: &Arranged, [tangent, other]: Pair, x: f64, turns: bool, found: &mu
     found.push(all);
 }
 
-/// Candidates for the joints of a loop, from plain numbers: the five unknown turns in order, then the swept variable as `[cos, sin]`
-/// or `[length, 0]`.
-///
-/// Slack is for poses at which that gave nothing, as in [`six`](super::six::six).
-pub fn sweep_of(x: &[f64; NUMBERS], slack: f64) -> Candidates {
-    let mut found = Candidates::NONE;
+/// A loop, where its variable is looked for, and whether that is an angle.
+struct Task {
+    loop_: Loop,
+    span: [f64; 2],
+    turns: bool,
+}
+
+/// The loop of plain numbers; nothing if they do not make one.
+fn task(x: &[f64; NUMBERS], slack: f64) -> Option<Task> {
     let vector = |i: usize| [x[i], x[i + 1], x[i + 2]];
     let mut joints =
         [Joint { line: Line { direction: [0.0; 3], point: [0.0; 3] }, kind: 0, ratio: 0.0 }; MOST_LINES];
     for number in x {
         if !(number.abs() < f64::INFINITY) {
-            return found;
+            return None;
         }
     }
     let mut lines = [Line { direction: [0.0; 3], point: vector(3) }; MOST_LINES];
@@ -308,7 +353,7 @@ pub fn sweep_of(x: &[f64; NUMBERS], slack: f64) -> Candidates {
         lines[i].point = if joint.kind > 0 { line.point } else { lines[0].point };
     }
     if unknown != 5 {
-        return found;
+        return None;
     }
     const GOAL: usize = 8 * MOST_LINES;
     let goal = Motion { rows: [vector(GOAL), vector(GOAL + 3), vector(GOAL + 6)], place: vector(GOAL + 9) };
@@ -324,15 +369,74 @@ pub fn sweep_of(x: &[f64; NUMBERS], slack: f64) -> Candidates {
     };
     let before = (first == last).then_some(first);
     let loop_ = Loop { joints, goal, measure: Measure::of(&lines, lines[0].point), before };
-    for code in &x[GOAL + 12..NUMBERS - 1] {
-        if *code > 0.0 {
-            let code = (*code as usize - 1) % ORDERS;
-            if solve(&loop_, code, span, turns, slack, &mut found) && slack == 0.0 && found.count() > 0 {
-                break;
-            }
+    Some(Task { loop_, span, turns })
+}
+
+/// The numbers of the orders.
+fn orders(x: &[f64; NUMBERS]) -> impl Iterator<Item = &[f64]> {
+    let orders = x[8 * MOST_LINES + 12..NUMBERS - 1].chunks(ORDER_NUMBERS);
+    orders.filter(|numbers| numbers[0] >= 1.0)
+}
+
+/// Candidates for the joints of a loop, from plain numbers: the five unknown turns in order, then the swept variable as `[cos, sin]`
+/// or `[length, 0]`.
+///
+/// Slack is for poses at which that gave nothing, as in [`six`](super::six::six).
+pub fn sweep_of(x: &[f64; NUMBERS], slack: f64) -> Candidates {
+    let mut found = Candidates::NONE;
+    let table: Cosines = cosines();
+    let Some(Task { loop_, span, turns }) = task(x, slack) else { return found };
+    for numbers in orders(x) {
+        let ordered = Ordered::new(&loop_, numbers);
+        let mut all = true;
+        let ended = walk(&ordered, &table, span, |piece, resolved| {
+            all &= look(&ordered, &table, piece, turns, 5.0 * sqrt(slack), ZOOMS, &mut found) && resolved;
+        });
+        // Other orders differ in what lies near to what.
+        if ended && all && slack == 0.0 && found.count() > 0 {
+            break;
         }
     }
     found
+}
+
+/// Where roots of the first order may be that come whatever the goal: means of those near each real one, told to `place`.
+pub fn clusters_of(x: &[f64; NUMBERS], mut place: impl FnMut(f64)) {
+    let table: Cosines = cosines();
+    let Some(Task { loop_, span, .. }) = task(x, 0.0) else { return };
+    let Some(numbers) = orders(x).next() else { return };
+    let ordered = Ordered::new(&loop_, numbers);
+    let mut roots = [[0.0; 2]; MAX_SIZE];
+    walk(&ordered, &table, span, |piece, _| {
+        let tight = CLUSTER * piece.half;
+        let count = piece.roots(0.0, tight, &mut roots);
+        for [x, y] in &roots[..count] {
+            let (mut near, mut sum) = (0, 0.0);
+            for [other, height] in &roots[..count] {
+                if (other - x).abs() + (height - y).abs() < 2.0 * tight {
+                    near += 1;
+                    sum += other;
+                }
+            }
+            place(sum / near as f64);
+        }
+    });
+}
+
+/// How fast the determinant of the first order falls towards a value from both sides at once, at a distance: as many powers of that as
+/// there are roots, if no others are near.
+pub fn fall_of(x: &[f64; NUMBERS], place: f64, distance: f64) -> f64 {
+    let Some(Task { loop_, .. }) = task(x, 0.0) else { return 0.0 };
+    let Some(numbers) = orders(x).next() else { return 0.0 };
+    let ordered = Ordered::new(&loop_, numbers);
+    let product = |h: f64| (ordered.value(place - h) * ordered.value(place + h)).abs();
+    // Square roots in place of logarithms, which the kernel has not: how often doubling the distance doubles the mean of the two.
+    let (mut ratio, mut powers) = (product(2.0 * distance) / product(distance), 0.0);
+    while ratio > 2.0 && powers < 16.0 {
+        ratio *= 0.25;
+        powers += 1.0;
+    }
+    powers
 }
 
 /// How far a slide can go at most: the other joints reach no farther.

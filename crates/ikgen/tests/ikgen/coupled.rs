@@ -78,6 +78,7 @@ fn chains() -> Vec<SerialChain> {
         telescope(crooked("two slides"), 0.5),
         following(five, 2, 1, 1.0),
         lengthened(1),
+        lengthened(4),
     ]
 }
 
@@ -86,7 +87,7 @@ pub(crate) fn two_kinds() -> Vec<Compiled> {
     let named = |chain: SerialChain, name: &str| {
         compile(&SerialChain { name: name.into(), ..chain }, &options()).unwrap()
     };
-    vec![named(chains().swap_remove(1), "by_half"), named(lengthened(1), "sliding")]
+    vec![named(chains().swap_remove(1), "by_half"), named(lengthened(4), "sliding")]
 }
 
 /// Fewer trials than usual: a sweep takes a millisecond.
