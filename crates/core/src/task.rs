@@ -110,12 +110,10 @@ impl Article {
 /// Something that shall happen.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Goal {
-    /// Pick an object up and put it down.
+    /// Pick one object up and put it down.
     Place {
-        /// Position in [`Task::objects`].
-        object: usize,
-        /// Where it may end up.
-        destination: Destination,
+        /// The objects of which any one does, at least one, none twice.
+        targets: Vec<Target>,
         /// Largest tilt of the object's z axis against the world's while carried, radians, if limited.
         keep_upright: Option<f64>,
     },
@@ -128,12 +126,63 @@ pub enum Goal {
     },
 }
 
+/// An object of a goal, and where it may end up.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    /// Position in [`Task::objects`].
+    pub object: usize,
+    /// Where it may end up.
+    pub destination: Destination,
+}
+
+impl Goal {
+    /// The objects of which any one is to be placed; none for articles.
+    pub fn targets(&self) -> &[Target] {
+        match self {
+            Self::Place { targets, .. } => targets,
+            Self::Open { .. } => &[],
+        }
+    }
+}
+
 impl Task {
-    /// The name of what a goal is about: its object or its article.
+    /// The name of what a goal is about: its article, or its object, the first one where several will do.
     pub fn name_of(&self, goal: &Goal) -> &str {
-        match *goal {
-            Goal::Place { object, .. } => &self.objects[object].name,
-            Goal::Open { article, .. } => &self.articles[article].name,
+        match goal {
+            Goal::Place { targets, .. } => &self.objects[targets[0].object].name,
+            Goal::Open { article, .. } => &self.articles[*article].name,
+        }
+    }
+}
+
+/// Farthest that an object may be from where it has to be, metres, and largest angle, radians.
+const ADMITTED: f64 = 1e-6;
+
+impl Destination {
+    /// Whether an object that stands there is where it shall be.
+    pub fn admits(&self, there: &Pose) -> bool {
+        match self {
+            Self::Pose { world_from_object, any_yaw } => {
+                let offset = world_from_object.translation.vector - there.translation.vector;
+                let turned = if *any_yaw {
+                    // What any turn about the vertical leaves: where the vertical is in the object.
+                    let up = |pose: &Pose| pose.rotation.inverse() * nalgebra::Vector3::z();
+                    (up(world_from_object) - up(there)).norm()
+                } else {
+                    world_from_object.rotation.angle_to(&there.rotation)
+                };
+                offset.norm() <= ADMITTED && turned <= ADMITTED
+            }
+            Self::Region { world_from_region, size, origin_height } => {
+                let region_from_object = world_from_region.inv_mul(there);
+                let at = region_from_object.translation.vector;
+                let up = region_from_object.rotation * nalgebra::Vector3::z();
+                at.x.abs() <= 0.5 * size[0] + ADMITTED
+                    && at.y.abs() <= 0.5 * size[1] + ADMITTED
+                    && (at.z - origin_height).abs() <= ADMITTED
+                    && up.x.hypot(up.y) <= ADMITTED
+                    && up.z > 0.0
+            }
         }
     }
 }

@@ -278,8 +278,24 @@ impl Plan {
         for segment in &self.plan.segments {
             let entry = PyDict::new(py);
             entry.set_item("kind", segment.kind.to_string())?;
-            entry.set_item("object", task.name_of(&task.goals[segment.goal]))?;
+            entry.set_item("object", self.plan.name_of(task, segment.goal))?;
             entry.set_item("duration", segment.trajectory.duration())?;
+            list.append(entry)?;
+        }
+        Ok(list)
+    }
+
+    /// What was taken for each goal reached, in order, and what came of the other objects that would have done.
+    #[getter]
+    fn choices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let task = self.session.get().session.task();
+        let list = PyList::empty(py);
+        for choice in &self.plan.choices {
+            let entry = PyDict::new(py);
+            entry.set_item("goal", choice.goal())?;
+            entry.set_item("object", self.plan.name_of(task, choice.goal()))?;
+            let passed_over: Vec<String> = choice.passed_over().iter().map(|o| o.to_string()).collect();
+            entry.set_item("passed_over", passed_over)?;
             list.append(entry)?;
         }
         Ok(list)

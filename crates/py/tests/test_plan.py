@@ -58,6 +58,7 @@ def test_compiling_tells_and_keeps(compiled):
 def test_plan(plan):
     assert plan.complete and plan.skipped == []
     assert [s["kind"] for s in plan.segments] == ORDER
+    assert plan.choices == [{"goal": 0, "object": "block", "passed_over": []}]
     assert {s["object"] for s in plan.segments} == {"block"}
     assert plan.duration == pytest.approx(sum(s["duration"] for s in plan.segments))
     assert plan.seconds > 0

@@ -26,6 +26,8 @@ pub struct ExecutedSegment {
     pub kind: SegmentKind,
     /// Position in `Task::goals` of the goal it served.
     pub goal: usize,
+    /// Name of the object or article that it moves.
+    pub about: String,
     /// Seconds since the start when it began and ended.
     pub span: [f64; 2],
 }
@@ -141,7 +143,8 @@ pub fn execute(mut world: World, task: &Task, plan: &Plan, rate: f64) -> Result<
             }
         }
         let end = start + duration;
-        segments.push(ExecutedSegment { kind: segment.kind, goal: segment.goal, span: [start, end] });
+        let about = plan.name_of(task, segment.goal).to_owned();
+        segments.push(ExecutedSegment { kind: segment.kind, goal: segment.goal, about, span: [start, end] });
         start = end;
     }
     Ok(Execution { ticks, segments, world })

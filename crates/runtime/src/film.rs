@@ -73,8 +73,7 @@ pub fn film(session: &Session, execution: &Execution, trees: &TreeKeeper) -> Rec
         recording.push_frame(tick.time, frame);
     }
     for segment in &execution.segments {
-        let Some(goal) = task.goals.get(segment.goal) else { continue };
-        let name = format!("{} {}", segment.kind, task.name_of(goal));
+        let name = format!("{} {}", segment.kind, segment.about);
         recording.add_stage(name, segment.span[0], segment.span[1]);
     }
     recording

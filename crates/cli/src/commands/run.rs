@@ -163,6 +163,10 @@ fn write_results(
         let [start, end] = segment.span;
         print(&format!("{start:7.2} s  {:8} {:5.2} s", segment.kind.to_string(), end - start));
     }
+    for choice in &plan.choices {
+        let taken = plan.name_of(session.task(), choice.goal());
+        choice.passed_over().iter().for_each(|other| print(&format!("took {taken}, not {other}")));
+    }
     print(&format!("{}, {:.2} s of motion", accomplished(plan), execution.duration()));
     if args.view.is_some() || args.glb.is_some() {
         let recording = clock.stage("film", || recording(session, execution, plan, trees, seed));
@@ -247,6 +251,7 @@ struct Report<'a> {
     seed: u64,
     motion_seconds: f64,
     segments: Vec<SegmentReport>,
+    choices: Vec<ChoiceReport>,
     artefacts: Vec<ArtefactReport>,
 }
 
@@ -259,6 +264,14 @@ struct SegmentReport {
     joint_length: f64,
     /// Length of the path of the tool, metres; zero for motions of fingers or base alone.
     tool_length: f64,
+}
+
+/// What was taken for a goal, and of each other object that would have done what came of it.
+#[derive(Serialize)]
+struct ChoiceReport {
+    goal: usize,
+    object: String,
+    passed_over: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -292,10 +305,29 @@ impl<'a> Report<'a> {
             }
         }
         let segments = done.map_or_else(Vec::new, |(_, plan)| segments(session, plan));
+        let choices = done.map_or_else(Vec::new, |(_, plan)| choices(session, plan));
         let motion_seconds = done.map_or(0.0, |(execution, _)| execution.duration());
         let plan_seconds = clock.seconds("plan");
-        Self { outcome, stages: &clock.stages, plan_seconds, seed, motion_seconds, segments, artefacts }
+        Self {
+            outcome,
+            stages: &clock.stages,
+            plan_seconds,
+            seed,
+            motion_seconds,
+            segments,
+            choices,
+            artefacts,
+        }
     }
+}
+
+fn choices(session: &Session, plan: &Plan) -> Vec<ChoiceReport> {
+    let report = |choice: &Choice| ChoiceReport {
+        goal: choice.goal(),
+        object: plan.name_of(session.task(), choice.goal()).to_owned(),
+        passed_over: choice.passed_over().iter().map(ToString::to_string).collect(),
+    };
+    plan.choices.iter().map(report).collect()
 }
 
 fn segments(session: &Session, plan: &Plan) -> Vec<SegmentReport> {

@@ -516,7 +516,7 @@ pub const CODES: &[CodeInfo] = &[
     entry(
         "R0504",
         "unknown object",
-        "A goal names something that is not an `[[object]]` of the task. Obstacles stay where they are.",
+        "A goal names something that is not an `[[object]]` of the task, or names one twice. Obstacles stay where they are.",
     ),
     entry(
         "R0505",

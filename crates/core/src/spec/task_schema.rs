@@ -229,6 +229,11 @@ static GOAL: TableSchema = TableSchema {
     doc: "Something that shall happen.",
     keys: &[
         Key::optional("place", Kind::Text(Text::Object), "Pick this object up and put it down."),
+        Key::optional(
+            "or",
+            Kind::List(&Kind::Text(Text::Object), Length::AtLeast(1)),
+            "Other objects of which any one does as well: grasps of all of them are tried, the most promising first.",
+        ),
         Key::optional("at", Kind::Table(&POSE), "Where its frame shall end up in the world."),
         Key::optional(
             "any_yaw",
@@ -259,7 +264,7 @@ static GOAL: TableSchema = TableSchema {
         Rule::ExactlyOne(&["place", "open"]),
         Rule::OneWith { keys: &["at", "region"], with: "place" },
         Rule::OnlyWith { keys: &["any_yaw"], with: "at" },
-        Rule::OnlyWith { keys: &["keep_upright"], with: "place" },
+        Rule::OnlyWith { keys: &["or", "keep_upright"], with: "place" },
         Rule::OnlyWith { keys: &["to"], with: "open" },
     ],
 };

@@ -42,8 +42,8 @@ fn tasks_load_without_findings() {
         assert!(found.is_empty(), "{}", found.to_plain_text(&sources));
         let task = spec.unwrap().task;
         assert!(!task.goals.is_empty(), "{file}");
-        for goal in &task.goals {
-            if let Goal::Place { destination: Destination::Region { origin_height, .. }, .. } = goal {
+        for target in task.goals.iter().flat_map(Goal::targets) {
+            if let Destination::Region { origin_height, .. } = &target.destination {
                 assert!(origin_height.abs() < 1.0, "{file}: stands {origin_height} m above the surface");
             }
         }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use robotc_core::Pose;
 use robotc_core::diag::Sources;
 use robotc_core::model::Shape;
 use robotc_core::robot::{Base, Robot};
@@ -87,13 +88,13 @@ fn meshes_stand_up_and_lie_on_surfaces() {
     let expected = [-0.002, -0.003, -0.001, 0.002, 0.003, 0.005];
     let found = [low.x, low.y, low.z, high.x, high.y, high.z];
     assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
-    let Goal::Place { destination, keep_upright, .. } = &task.goals[0] else { panic!("an object") };
-    let Destination::Region { origin_height, .. } = destination else { panic!("a region") };
+    let Goal::Place { targets, keep_upright } = &task.goals[0] else { panic!("an object") };
+    let Destination::Region { origin_height, .. } = &targets[0].destination else { panic!("a region") };
     assert!((origin_height - 0.001).abs() < 1e-12);
     assert_eq!(*keep_upright, Some(0.2));
-    let Goal::Place { object, destination, .. } = &task.goals[1] else { panic!("an object") };
-    assert_eq!(*object, 1);
-    assert!(matches!(destination, Destination::Pose { any_yaw: true, .. }));
+    let [target] = task.goals[1].targets() else { panic!("an object") };
+    assert_eq!(target.object, 1);
+    assert!(matches!(target.destination, Destination::Pose { any_yaw: true, .. }));
 }
 
 #[test]
@@ -113,4 +114,27 @@ fn measurements_become_solids() {
     let Shape::HeightField { field, .. } = &obstacles[2].geometry[0].shape else { panic!("a height field") };
     let known: Vec<bool> = field.heights().iter().map(|h| !h.is_nan()).collect();
     assert_eq!((known, field.floor()), (vec![true, true, true, true, true, false], -0.5));
+}
+
+#[test]
+fn a_destination_admits_what_stands_there() {
+    use nalgebra::{Translation3, UnitQuaternion};
+    let turned = |yaw: f64, tilt: f64| UnitQuaternion::from_euler_angles(tilt, 0.0, yaw);
+    let at = |x: f64, z: f64, yaw, tilt| Pose::from_parts(Translation3::new(x, 0.2, z), turned(yaw, tilt));
+    for (any_yaw, yaw, admitted) in [(false, 0.0, true), (false, 0.3, false), (true, 0.3, true)] {
+        let destination = Destination::Pose { world_from_object: at(0.5, 0.1, 0.0, 0.4), any_yaw };
+        let world_from_object =
+            Pose::from_parts(Translation3::new(0.5, 0.2, 0.1), turned(yaw, 0.0) * turned(0.0, 0.4));
+        assert_eq!(destination.admits(&world_from_object), admitted, "{any_yaw} {yaw}");
+        assert!(!destination.admits(&at(0.51, 0.1, 0.0, 0.4)));
+        assert!(!destination.admits(&at(0.5, 0.1, 0.0, 0.5)));
+    }
+    let world_from_region = at(0.5, 0.1, 1.0, 0.0);
+    let region = Destination::Region { world_from_region, size: [0.2, 0.1], origin_height: 0.05 };
+    let there = |x: f64, z: f64, tilt: f64| {
+        world_from_region * Pose::from_parts(Translation3::new(x, 0.049, z), turned(2.0, tilt))
+    };
+    assert!(region.admits(&there(0.099, 0.05, 0.0)) && region.admits(&there(-0.1, 0.05, 0.0)));
+    assert!(!region.admits(&there(0.11, 0.05, 0.0)), "beside it");
+    assert!(!region.admits(&there(0.0, 0.06, 0.0)) && !region.admits(&there(0.0, 0.05, 0.1)), "not on it");
 }

@@ -9,7 +9,7 @@ use robotc_core::model::{
 };
 use robotc_core::robot::{Base, Camera, Hold, Preshape};
 use robotc_core::spec::{ParameterValue, RobotSpec, TaskSpec};
-use robotc_core::task::{Article, Destination, Goal, Object, Obstacle};
+use robotc_core::task::{Article, Destination, Goal, Object, Obstacle, Target};
 use robotc_core::{Arm, Gripper, Pose, Robot, Task};
 use robotc_kb::{Given, Project};
 
@@ -260,11 +260,13 @@ impl Spec {
             obstacles: std::iter::once(self.obstacle.clone()).chain(self.bodies()).collect(),
             articles: self.articles.clone(),
             goals: vec![Goal::Place {
-                object: 0,
-                destination: Destination::Pose {
-                    world_from_object: Pose::translation(0.4, 0.4, 0.3),
-                    any_yaw: true,
-                },
+                targets: vec![Target {
+                    object: 0,
+                    destination: Destination::Pose {
+                        world_from_object: Pose::translation(0.4, 0.4, 0.3),
+                        any_yaw: true,
+                    },
+                }],
                 keep_upright: None,
             }],
             seed: 1,

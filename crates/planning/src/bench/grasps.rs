@@ -1,7 +1,6 @@
 //! How long it takes to know one way to pick an object up and put it down (thesis algorithms 3.4 to 3.6).
 
 use robotc_core::Seed;
-use robotc_core::task::Goal;
 use serde::Serialize;
 
 use crate::budget::Budget;
@@ -62,7 +61,7 @@ pub fn measure_grasps(
     let planner = ManipulationOptions { destinations: options.destinations, ..planner.clone() };
     let mut reports = Vec::new();
     for (number, goal) in problem.task.goals.iter().enumerate() {
-        let Goal::Place { object, .. } = *goal else { continue };
+        let [target, ..] = goal.targets() else { continue };
         let look = |most: usize, seed: u64| {
             let start = now();
             let budget = Budget::unlimited();
@@ -72,7 +71,7 @@ pub fn measure_grasps(
         };
         let runs: Vec<(UsableGrasps, f64)> = (0..options.seeds).filter_map(|seed| look(1, seed)).collect();
         if let (Some((all, all_ms)), false) = (look(usize::MAX, 0), runs.is_empty()) {
-            let object = &problem.task.objects[object].name;
+            let object = &problem.task.objects[target.object].name;
             reports.push(report(object, &runs, (all.found.len(), all_ms)));
         }
         done(number + 1, problem.task.goals.len());

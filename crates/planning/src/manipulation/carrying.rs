@@ -6,7 +6,7 @@ use super::driving::{Drive, PLACEMENT, PLACES, drive_to, plan_driving};
 use super::folding::{Load, fold};
 use super::maker::Maker;
 use super::pick_up::{pick_up, plan_place};
-use super::picks::{Lifted, Pick, PickSampler};
+use super::picks::{Lifted, Pick, PickSampler, Target};
 use super::places::{ReachedBases, Standing, Targets, Unloading};
 use super::placings::Destinations;
 use super::plan::{GoalFailure, SegmentKind, Stage};
@@ -39,7 +39,7 @@ pub(super) fn plan_place_elsewhere(
     let seed = seed.split("drive");
     let targets = Targets::of_grasps(cx, scene, seed.split("destinations"));
     let bases = ReachedBases { cx, drive: &drive, targets: &targets };
-    let taken = Targets { destinations: vec![], ..targets.clone() };
+    let taken = targets.clone().without_destinations();
     if bases.share_a_place(&mut seed.split("shared").rng()) {
         let mut there = |cx: &GoalContext<'_>, q: &Configuration, seed: Seed| {
             // What is shown of searches is drawn where the robot stands at first.
@@ -71,13 +71,15 @@ fn take_away(
     seed: Seed,
 ) -> Result<Reached, Box<GoalFailure>> {
     let mut then = |pick: &Pick, sampler: &mut PickSampler<'_, '_>, _: &mut _, _: &mut dyn Observer| {
-        let grasp = &sampler.set.grasps[pick.grasp];
+        let Target { cx, set, destinations, .. } = &mut sampler.targets[pick.target];
+        let grasp = &set.grasps[pick.grasp];
         let mut lifted = cx.with_fingers(q, &grasp.closed);
         lifted.set(cx.problem.arm.dofs(), &pick.lift[pick.lift.len() - 1]);
-        let seed = seed.split("away").at(pick.grasp as u64);
-        carry_off(cx, scene, &lifted, drive, grasp, sampler.destinations, budget, seed)
+        let seed = seed.split("away").at(cx.object as u64).at(pick.grasp as u64);
+        carry_off(cx, scene, &lifted, drive, grasp, destinations, budget, seed)
     };
     let (picked, away) = pick_up(cx, scene, q, Lifted::TakenAway, budget, seed, &mut (), &mut then)?;
+    let cx = &GoalContext { object: picked.object, ..*cx };
     let mut made = Maker::new(cx, q);
     let (grasp, held) = picked.segments(cx, scene, q, &mut made);
     let carrying = cx.free(Some(cx.grip(&grasp.object_from_tool)));
@@ -122,8 +124,8 @@ fn carry_off(
     let (grip_there, rng) = (grip.clone(), seed.split("free").rng());
     let unloading =
         Unloading { grip: grip_there, destinations: destinations.clone(), rejections: Rejections::default() };
-    let (hands, load) = (&targets.hands[..], Some(unloading));
-    let mut standing = Standing { cx, scene, hands, load, drive, folded: &folded, rng };
+    let load = Some(unloading);
+    let mut standing = Standing::new(cx, scene, &targets, load, drive, &folded, rng);
     let mut bases = ReachedBases { cx, drive, targets: &targets };
     let mut places = BasePlacement::new(&mut standing, &mut bases, &arms, PLACEMENT, seed.split("places"));
     let mut last = GoalFailure::new(cx.object_name(), Stage::Carry);

@@ -71,7 +71,8 @@ pub fn certify(
         if limit_use(trajectory.times(), trajectory.knots(), &limits) > LIMIT_USE {
             return Err(wrong(0.0, "a speed limit is exceeded".into()));
         }
-        let rules = rules(problem, options, segment, &links);
+        let object = plan.object_of(segment.goal);
+        let rules = rules(problem, options, segment, object, &links);
         states += match &segment.article {
             None => replay(problem, &scene, &q, segment, rules, resolution),
             Some(motion) => {
@@ -117,6 +118,15 @@ pub fn certify(
         }
     }
     for choice in &plan.choices {
+        if let Choice::Place(choice) = choice {
+            let targets = problem.task.goals[choice.goal].targets();
+            let target = targets.iter().find(|target| target.object == choice.object);
+            if !target.is_some_and(|target| target.destination.admits(&choice.world_from_object)) {
+                let (segment, kind) = (plan.segments.len(), SegmentKind::Release);
+                let message = "an object is put where the goal does not want it".into();
+                return Err(Uncertified { segment, kind, time: 0.0, message });
+            }
+        }
         if let Choice::Open(OpenChoice { goal, article, .. }) = *choice
             && let Goal::Open { to, .. } = problem.task.goals[goal]
             && (values[article] - to).abs() > PLACED
@@ -134,11 +144,12 @@ fn rules(
     problem: &Manipulation<'_>,
     options: &ManipulationOptions,
     segment: &Segment,
+    object: Option<usize>,
     links: &[robotc_core::LinkIdx],
 ) -> Rules {
     let (target, give) = match problem.task.goals[segment.goal] {
-        Goal::Place { object, .. } => (BodyIdx::new(object), None),
-        Goal::Open { article, .. } => (BodyIdx::new(problem.handle_of(article)), Some(options.give)),
+        Goal::Place { .. } => (object.map(BodyIdx::new), None),
+        Goal::Open { article, .. } => (Some(BodyIdx::new(problem.handle_of(article))), Some(options.give)),
     };
     let held = segment.held.as_ref().map(|h| Grip {
         body: BodyIdx::new(h.object),
@@ -159,7 +170,7 @@ fn rules(
         }
         _ => None,
     };
-    Rules { margin: 0.0, held, gripper: links.to_vec(), target: near.then_some(target), give, sink }
+    Rules { margin: 0.0, held, gripper: links.to_vec(), target: target.filter(|_| near), give, sink }
 }
 
 /// Looks at the motion: what is carried upright in steps of the resolution, collisions as often as the room that is left asks for.

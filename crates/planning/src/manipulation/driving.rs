@@ -99,8 +99,7 @@ pub(super) fn plan_driving(
     folded.set(cx.problem.arm.dofs(), &fold[fold.len() - 1]);
     let arms = [PlacementArm { cost: 1.0, grasps: targets.grasps.clone() }];
     let rng = seed.split("free").rng();
-    let mut standing =
-        Standing { cx, scene, hands: &targets.hands, load: None, drive: &drive, folded: &folded, rng };
+    let mut standing = Standing::new(cx, scene, &targets, None, &drive, &folded, rng);
     let mut bases = ReachedBases { cx, drive: &drive, targets: &targets };
     let mut places = BasePlacement::new(&mut standing, &mut bases, &arms, PLACEMENT, seed.split("places"));
     let mut last = missed;

@@ -33,8 +33,8 @@ pub use destinations::destination_poses;
 pub(crate) use opening::article_steps;
 pub use options::{ManipulationOptions, Measures};
 pub use plan::{
-    ArticleMotion, Choice, Event, GoalFailure, Held, Nearest, OpenChoice, PlaceChoice, Plan, Segment,
-    SegmentKind, SkippedGoal, Stage, Tried,
+    ArticleMotion, Choice, Event, GoalFailure, Held, Nearest, OpenChoice, PassedOver, PlaceChoice, Plan,
+    Segment, SegmentKind, SkippedGoal, Stage, Tried,
 };
 pub use problem::{Manipulation, gripper_links};
 pub(crate) use problem::{finger_space, with_fingers_space};

@@ -1,15 +1,14 @@
 //! From where the robot stands to an object in its hand, with something in mind for it.
 
 use robotc_core::rng::Rng;
-use robotc_core::task::Goal;
 use robotc_core::{Configuration, Seed};
 
-use super::destinations::destination_poses;
 use super::free_motion::{FreeMotion, start_rules};
 use super::maker::Maker;
-use super::picks::{Lifted, Pick, PickSampler};
-use super::placings::Destinations;
-use super::plan::{Choice, Event, GoalFailure, Held, Nearest, PlaceChoice, SegmentKind, Stage, Tried};
+use super::picks::{Lifted, Pick, PickSampler, Target};
+use super::plan::{
+    Choice, Event, GoalFailure, Held, Nearest, PassedOver, PlaceChoice, SegmentKind, Stage, Tried,
+};
 use super::problem::GoalContext;
 use super::put_down::put_down;
 use super::rejections::{Filter, Rejections, none_usable};
@@ -22,9 +21,12 @@ use crate::scene::Scene;
 
 /// How an object comes into the hand.
 pub(super) struct PickedUp {
+    /// Position in the task.
+    pub(super) object: usize,
     reach: Vec<Vec<f64>>,
-    pub(super) pick: Pick,
-    pub(super) rejections: Rejections,
+    pick: Pick,
+    rejections: Rejections,
+    passed_over: Vec<PassedOver>,
 }
 
 /// Plans a goal to place an object from configuration `q`, without driving.
@@ -36,14 +38,14 @@ pub(super) fn plan_place(
     seed: Seed,
     observer: &mut dyn Observer,
 ) -> Result<Reached, Box<GoalFailure>> {
-    let mut then = |pick: &Pick,
-                    sampler: &mut PickSampler<'_, '_>,
-                    rng: &mut Rng,
-                    watch: &mut dyn Observer| {
-        let (grasp, from) = (&sampler.set.grasps[pick.grasp], &pick.lift[pick.lift.len() - 1]);
-        put_down(cx, scene, q, grasp, from, pick.placing.as_ref(), sampler.destinations, budget, rng, watch)
-    };
+    let mut then =
+        |pick: &Pick, sampler: &mut PickSampler<'_, '_>, rng: &mut Rng, watch: &mut dyn Observer| {
+            let Target { cx, set, destinations, .. } = &mut sampler.targets[pick.target];
+            let (grasp, from) = (&set.grasps[pick.grasp], &pick.lift[pick.lift.len() - 1]);
+            put_down(cx, scene, q, grasp, from, pick.placing.as_ref(), destinations, budget, rng, watch)
+        };
     let (picked, put) = pick_up(cx, scene, q, Lifted::PutDown, budget, seed, observer, &mut then)?;
+    let cx = &GoalContext { object: picked.object, ..*cx };
     let mut made = Maker::new(cx, q);
     let (grasp, held) = picked.segments(cx, scene, q, &mut made);
     let world_from_object = put.into_segments(cx, scene, grasp, &held, &mut made);
@@ -66,15 +68,8 @@ pub(super) fn pick_up<T>(
         &mut dyn Observer,
     ) -> Result<T, Box<GoalFailure>>,
 ) -> Result<(PickedUp, T), Box<GoalFailure>> {
-    stands_free(cx, scene)?;
-    let Goal::Place { destination, keep_upright, .. } = cx.goal() else {
-        unreachable!("goals to place an object come here")
-    };
-    let set = cx.problem.grasps[cx.object];
-    let poses = destination_poses(destination, cx.options.destinations, &mut seed.split("destination").rng());
-    let mut destinations = Destinations::new(poses);
-    let rng = seed.split("grasps").rng();
-    let mut sampler = PickSampler::new(*cx, scene, set, &mut destinations, q, *keep_upright, lifted, rng);
+    let targets = standing_free(cx, scene, seed.split("destination"))?;
+    let mut sampler = PickSampler::new(targets, scene, q, lifted, seed.split("grasps").rng());
     let mut rng = seed.split("search").rng();
     let start = cx.arm_values(q);
     let mut carries = Carries::default();
@@ -103,13 +98,15 @@ pub(super) fn pick_up<T>(
         match then(&pick, &mut sampler, &mut rng, observer) {
             Ok(done) => {
                 let reach = reach.smoothed(solution.path, budget, &mut rng);
-                let rejections = sampler.rejections.clone();
-                return Ok((PickedUp { reach, pick, rejections }, done));
+                let rejections = sampler.targets[pick.target].rejections.clone();
+                let passed_over = sampler.passed_over(Some(pick.target));
+                let object = sampler.targets[pick.target].cx.object;
+                return Ok((PickedUp { object, reach, pick, rejections, passed_over }, done));
             }
             Err(missed) if missed.interrupt.is_some() => return Err(carries.conclude(missed, &sampler)),
             Err(missed) => {
                 carries.add(*missed);
-                sampler.drop_grasp(pick.grasp);
+                sampler.drop_grasp(pick.target, pick.grasp);
             }
         }
     }
@@ -138,7 +135,10 @@ impl Carries {
     /// The failure that ends planning for the goal, with the counts of everything before it.
     fn conclude(&self, mut missed: Box<GoalFailure>, sampler: &PickSampler<'_, '_>) -> Box<GoalFailure> {
         missed.tried = sampler.tried();
-        missed.rejections.merge(&sampler.rejections);
+        sampler.targets.iter().for_each(|target| missed.rejections.merge(&target.rejections));
+        if sampler.targets.len() > 1 {
+            missed.passed_over = sampler.passed_over(None);
+        }
         missed.rejections.merge(&self.rejections);
         missed.nearest = nearer(missed.nearest, self.nearest);
         missed
@@ -152,15 +152,26 @@ fn nearer(a: Option<Nearest>, b: Option<Nearest>) -> Option<Nearest> {
     }
 }
 
-/// Whether the object could be lifted at all: nothing else overlaps it where it stands.
-fn stands_free(cx: &GoalContext<'_>, scene: &Scene) -> Result<(), Box<GoalFailure>> {
-    let world_from_object = *scene.world_from_body(cx.body());
-    scene.body_against_bodies(cx.body(), world_from_object, cx.sink()).map_err(|touch| {
-        let mut failure = GoalFailure::new(cx.object_name(), Stage::Start);
-        failure.message = "it overlaps with something where it stands".into();
-        failure.rejections.add_because(Filter::Standing, cause(scene, touch.into()));
-        failure
-    })
+/// The objects of the goal that can be lifted at all: nothing else overlaps them where they stand.
+fn standing_free<'a>(
+    cx: &GoalContext<'a>,
+    scene: &Scene,
+    seed: Seed,
+) -> Result<Vec<Target<'a>>, Box<GoalFailure>> {
+    let mut failure = GoalFailure::new(cx.object_name(), Stage::Start);
+    failure.message = "all that would do were put down for other goals".into();
+    let mut free = Vec::new();
+    for cx in cx.of_targets() {
+        let world_from_object = *scene.world_from_body(cx.body());
+        match scene.body_against_bodies(cx.body(), world_from_object, cx.sink()) {
+            Ok(()) => free.push(Target::new(cx, seed)),
+            Err(touch) => {
+                failure.message = "it overlaps with something where it stands".into();
+                failure.rejections.add_because(Filter::Standing, cause(scene, touch.into()));
+            }
+        }
+    }
+    if free.is_empty() { Err(failure) } else { Ok(free) }
 }
 
 impl PickedUp {
@@ -211,6 +222,7 @@ impl PickedUp {
             grasp: self.pick.grasp,
             world_from_object,
             rejections: self.rejections,
+            passed_over: self.passed_over,
         });
         Reached { segments: made.segments, choice, q: made.q }
     }

@@ -3,11 +3,13 @@
 use nalgebra::Vector3;
 use robotc_core::ik::IkSolutions;
 use robotc_core::rng::Rng;
-use robotc_core::{Configuration, LinkPoses, Pose};
+use robotc_core::{BodyIdx, Configuration, LinkPoses, Pose, Seed};
 
+use super::destinations::destination_poses;
 use super::placings::{Destinations, Placing, PlacingSampler, Placings, free_values};
-use super::plan::Tried;
-use super::problem::GoalContext;
+use super::plan::{PassedOver, Tried};
+use super::problem::{GoalContext, Manipulation};
+use super::put_down::kept_upright;
 use super::ranking::ranking;
 use super::rejections::{Cause, Filter, Rejections};
 use super::stretch::{back_off, cause, fine_checker, fingers_move, raise, state_is_free};
@@ -20,6 +22,8 @@ use crate::scene::{Movers, Rules, Scene};
 /// A grasp with all its straight motions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Pick {
+    /// Position among the targets of the sampler.
+    pub(super) target: usize,
     /// Position in the grasp set.
     pub(super) grasp: usize,
     /// Arm configurations from where free motion ends to the grasp.
@@ -39,76 +43,101 @@ pub(super) enum Lifted {
     TakenAway,
 }
 
-/// The state of a search for picks of one object.
-pub(super) struct PickSampler<'a, 's> {
+/// One of the objects that may be picked.
+pub(super) struct Target<'a> {
+    /// The goal, for this object.
     pub(super) cx: GoalContext<'a>,
-    pub(super) scene: &'s Scene,
-    pub(super) set: &'s GraspSet,
-    pub(super) destinations: &'s mut Destinations,
-    /// The robot before the pick.
-    pub(super) q: Configuration,
-    pub(super) tilt: Option<f64>,
-    pub(super) lifted: Lifted,
-    pub(super) rng: Rng,
-    /// Grasps still in question, by rank.
-    pub(super) alive: Vec<usize>,
-    /// Grasps looked at, and picks found, so far.
-    pub(super) looked_at: usize,
-    pub(super) usable: usize,
-    /// Position in `alive`, and round of free values.
-    pub(super) cursor: usize,
-    pub(super) round: usize,
-    /// Branches of the present grasp still to be tried, the next one last.
-    pub(super) branches: Vec<(usize, Vec<f64>)>,
-    pub(super) found: Vec<Pick>,
-    /// How many of `found` the present search knows.
-    pub(super) handed_out: usize,
+    pub(super) set: &'a GraspSet,
+    pub(super) destinations: Destinations,
+    /// How many of its grasps were looked at, and gave picks.
+    pub(super) tried: Tried,
     pub(super) rejections: Rejections,
 }
 
+impl<'a> Target<'a> {
+    /// An object of the goal, with destinations drawn from `seed`.
+    pub(super) fn new(cx: GoalContext<'a>, seed: Seed) -> Self {
+        let set = cx.problem.grasps[cx.object];
+        let poses = cx.destination().map_or_else(Vec::new, |destination| {
+            destination_poses(destination, cx.options.destinations, &mut seed.rng())
+        });
+        let tried = Tried { known: set.grasps.len(), ..Tried::default() };
+        Self { cx, set, destinations: Destinations::new(poses), tried, rejections: Rejections::default() }
+    }
+}
+
+/// The state of a search for picks: the grasps of all targets are one set, in one order.
+pub(super) struct PickSampler<'a, 's> {
+    pub(super) targets: Vec<Target<'a>>,
+    pub(super) scene: &'s Scene,
+    /// The robot before the pick.
+    q: Configuration,
+    lifted: Lifted,
+    rng: Rng,
+    /// Grasps still in question, by rank: target and position in its set.
+    alive: Vec<(usize, usize)>,
+    /// Position in `alive`, and round of free values.
+    cursor: usize,
+    round: usize,
+    /// Branches of the present grasp still to be tried, the next one last.
+    branches: Vec<(usize, usize, Vec<f64>)>,
+    pub(super) found: Vec<Pick>,
+    /// How many of `found` the present search knows.
+    handed_out: usize,
+}
+
 impl<'a, 's> PickSampler<'a, 's> {
+    /// Picks of any of these targets, at least one, of one goal.
     pub(super) fn new(
-        cx: GoalContext<'a>,
+        targets: Vec<Target<'a>>,
         scene: &'s Scene,
-        set: &'s GraspSet,
-        destinations: &'s mut Destinations,
         q: &Configuration,
-        tilt: Option<f64>,
         lifted: Lifted,
         rng: Rng,
     ) -> Self {
+        let objects: Vec<(BodyIdx, &GraspSet)> = targets.iter().map(|t| (t.cx.body(), t.set)).collect();
+        let alive = targets
+            .first()
+            .map_or_else(Vec::new, |first| ranking(&first.cx.problem, first.cx.gripper(), scene, &objects));
         Self {
-            cx,
+            targets,
             scene,
-            set,
-            destinations,
             q: q.clone(),
-            tilt,
             lifted,
             rng,
-            alive: ranking(&cx.problem, cx.gripper(), scene, cx.body(), set),
-            looked_at: 0,
-            usable: 0,
+            alive,
             cursor: 0,
             round: 0,
             branches: Vec::new(),
             found: Vec::new(),
             handed_out: 0,
-            rejections: Rejections::default(),
         }
     }
 
-    /// How many grasps were looked at.
+    /// How many grasps were looked at, of all targets.
     pub(super) fn tried(&self) -> Tried {
-        Tried { known: self.set.grasps.len(), looked_at: self.looked_at, usable: self.usable }
+        self.targets.iter().fold(Tried::default(), |sum, target| sum + target.tried)
+    }
+
+    /// The targets with what came of them, but for the one that was `taken`.
+    pub(super) fn passed_over(&self, taken: Option<usize>) -> Vec<PassedOver> {
+        let others = self.targets.iter().enumerate().filter(|(number, _)| Some(*number) != taken);
+        others
+            .map(|(_, target)| PassedOver {
+                object: target.cx.object,
+                name: target.cx.object_name().to_owned(),
+                tried: target.tried,
+                rejections: target.rejections.clone(),
+            })
+            .collect()
     }
 
     /// Takes a grasp out of the search; the other picks found are handed out again.
-    pub(super) fn drop_grasp(&mut self, grasp: usize) {
-        self.found.retain(|pick| pick.grasp != grasp);
+    pub(super) fn drop_grasp(&mut self, target: usize, grasp: usize) {
+        self.found.retain(|pick| (pick.target, pick.grasp) != (target, grasp));
         self.handed_out = 0;
-        self.branches.retain(|(g, _)| *g != grasp);
-        if let Some(position) = self.alive.iter().position(|&g| g == grasp) {
+        self.branches.retain(|(t, g, _)| (*t, *g) != (target, grasp));
+        if let Some(position) = self.alive.iter().position(|&known| known == (target, grasp)) {
             self.alive.remove(position);
             if position < self.cursor {
                 self.cursor -= 1;
@@ -117,12 +146,16 @@ impl<'a, 's> PickSampler<'a, 's> {
     }
 
     /// The next branch to try; `Ok(None)` when a grasp was rejected, `Err` when all are through.
-    fn next_branch(&mut self) -> Result<Option<(usize, Vec<f64>)>, ()> {
+    fn next_branch(&mut self) -> Result<Option<(usize, usize, Vec<f64>)>, ()> {
         if let Some(branch) = self.branches.pop() {
             return Ok(Some(branch));
         }
-        let arm = self.cx.problem.arm;
-        let rounds = if arm.free_variables().is_empty() { 1 } else { self.cx.options.free_samples as usize };
+        let Some(GoalContext { problem: Manipulation { arm, .. }, options, .. }) =
+            self.targets.first().map(|target| target.cx)
+        else {
+            return Err(());
+        };
+        let rounds = if arm.free_variables().is_empty() { 1 } else { options.free_samples as usize };
         if self.cursor >= self.alive.len() {
             self.round += 1;
             self.cursor = 0;
@@ -130,35 +163,37 @@ impl<'a, 's> PickSampler<'a, 's> {
         if self.round >= rounds || self.alive.is_empty() {
             return Err(());
         }
-        let index = self.alive[self.cursor];
-        let grasp = &self.set.grasps[index];
-        self.looked_at += usize::from(self.round == 0);
-        let world_from_tool = self.scene.world_from_body(self.cx.body()) * grasp.object_from_tool;
+        let (number, index) = self.alive[self.cursor];
+        let target = &mut self.targets[number];
+        let cx = target.cx;
+        let grasp = &target.set.grasps[index];
+        target.tried.looked_at += usize::from(self.round == 0);
+        let world_from_tool = self.scene.world_from_body(cx.body()) * grasp.object_from_tool;
         if self.round == 0
-            && let Err((filter, cause)) = hand_check(&self.cx, self.scene, grasp, &world_from_tool)
+            && let Err((filter, cause)) = hand_check(&cx, self.scene, grasp, &world_from_tool)
         {
-            self.rejections.add_because(filter, cause);
+            target.rejections.add_because(filter, cause);
             self.alive.remove(self.cursor);
             return Ok(None);
         }
         self.cursor += 1;
-        let near = self.cx.arm_values(&self.q);
-        let free = free_values(&self.cx, self.round, &near, &mut self.rng);
+        let near = cx.arm_values(&self.q);
+        let free = free_values(&cx, self.round, &near, &mut self.rng);
         let mut scratch = IkSolutions::new();
         let (solutions, outside) = arm.inverse(&world_from_tool, &free, &near, &mut scratch);
         if solutions.is_empty() {
-            self.rejections.add(if outside > 0 { Filter::GraspLimits } else { Filter::GraspOutOfReach });
+            target.rejections.add(if outside > 0 { Filter::GraspLimits } else { Filter::GraspOutOfReach });
             return Ok(None);
         }
-        let best = solutions.into_iter().take(self.cx.options.branches);
-        self.branches = best.map(|q| (index, q)).rev().collect();
+        let best = solutions.into_iter().take(options.branches);
+        self.branches = best.map(|q| (number, index, q)).rev().collect();
         Ok(None)
     }
 
     /// All straight motions of one branch.
-    fn check(&mut self, index: usize, at: &[f64]) -> Result<Pick, (Filter, Option<Cause>)> {
-        let cx = self.cx;
-        let grasp = &self.set.grasps[index];
+    fn check(&mut self, number: usize, index: usize, at: &[f64]) -> Result<Pick, (Filter, Option<Cause>)> {
+        let (cx, set) = (self.targets[number].cx, self.targets[number].set);
+        let grasp = &set.grasps[index];
         let because = |filter| move |cause| (filter, Some(cause));
         let open = cx.with_fingers(&self.q, &cx.gripper().preshapes[grasp.preshape].values);
         state_is_free(&mut fine_checker(&cx, self.scene, &open, cx.touching()), at)
@@ -185,18 +220,19 @@ impl<'a, 's> PickSampler<'a, 's> {
         let lift = raise(&cx, self.scene, &closed, at, &rules).map_err(because(Filter::Lift))?;
 
         if self.lifted == Lifted::TakenAway {
-            return match self.somewhere_free(grasp) {
-                true => Ok(Pick { grasp: index, approach, lift, placing: None }),
+            return match self.targets[number].somewhere_free(self.scene, grasp) {
+                true => Ok(Pick { target: number, grasp: index, approach, lift, placing: None }),
                 false => Err((Filter::Destination, None)),
             };
         }
-        let upright = self.tilt.map(|tilt| upright(&cx, grasp, tilt));
+        let upright = kept_upright(&cx, grasp);
         let mut placings = placings(&cx, self.scene, grasp, &lift[lift.len() - 1], &self.q);
         placings.constraint = upright.as_ref().map(|u| u as _);
+        let target = &mut self.targets[number];
         let mut sampler = PlacingSampler {
             placings: &mut placings,
-            destinations: &mut *self.destinations,
-            rejections: &mut self.rejections,
+            destinations: &mut target.destinations,
+            rejections: &mut target.rejections,
             rng: &mut self.rng,
             handed_out: 0,
         };
@@ -208,14 +244,18 @@ impl<'a, 's> PickSampler<'a, 's> {
             }
         }
         match placings.found.pop() {
-            Some(placing) => Ok(Pick { grasp: index, approach, lift, placing: Some(placing) }),
+            Some(placing) => {
+                Ok(Pick { target: number, grasp: index, approach, lift, placing: Some(placing) })
+            }
             None => Err((Filter::Destination, None)),
         }
     }
+}
 
+impl Target<'_> {
     /// Whether the object and the gripper, without the arm, are free at one destination at least.
-    fn somewhere_free(&mut self, grasp: &Grasp) -> bool {
-        let Self { cx, scene, destinations, rejections, .. } = self;
+    fn somewhere_free(&mut self, scene: &Scene, grasp: &Grasp) -> bool {
+        let Self { cx, destinations, rejections, .. } = self;
         (0..destinations.counts()[0]).any(|index| {
             let world_from_tool = destinations.pose(index) * grasp.object_from_tool;
             let Some(there) = destinations.scene(index, cx, scene, rejections) else { return false };
@@ -237,15 +277,16 @@ impl GoalSampler for PickSampler<'_, '_> {
             match self.next_branch() {
                 Err(()) => return Ok(GoalDraw::Exhausted),
                 Ok(None) => return Ok(GoalDraw::Pending),
-                Ok(Some((index, at))) => match self.check(index, &at) {
+                Ok(Some((number, index, at))) => match self.check(number, index, &at) {
                     Ok(pick) => {
-                        self.usable += 1;
+                        self.targets[number].tried.usable += 1;
                         self.found.push(pick);
                     }
                     Err((filter, cause)) => {
+                        let rejections = &mut self.targets[number].rejections;
                         match cause {
-                            Some(cause) => self.rejections.add_because(filter, cause),
-                            None => self.rejections.add(filter),
+                            Some(cause) => rejections.add_because(filter, cause),
+                            None => rejections.add(filter),
                         }
                         return Ok(GoalDraw::Pending);
                     }

@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 
 use robotc_core::ik::IkSolutions;
 use robotc_core::rng::Rng;
-use robotc_core::task::Goal;
 use robotc_core::{Configuration, Pose, Seed};
 
 use super::driving::Drive;
@@ -27,32 +26,42 @@ const DRAWS: usize = 300;
 const SHARED_DRAWS: usize = 3000;
 
 /// Where the tool has to be able to get to.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(super) struct Targets {
     /// Grasps of what is there now.
-    pub(super) hands: Vec<Grasp>,
+    hands: Vec<Grasp>,
     /// `world_from_tool` of each, with the object where it is.
     pub(super) grasps: Vec<Pose>,
     /// The tool in the frame that `destinations` are of, for each, in the same order.
-    pub(super) part_from_tool: Vec<Pose>,
-    /// Where the frame gets to: the grasp has to be within reach there, too.
-    pub(super) destinations: Vec<Pose>,
+    part_from_tool: Vec<Pose>,
+    /// Which of the objects each belongs to, in the same order.
+    object: Vec<usize>,
+    /// Where the frame of each object gets to: the grasp has to be within reach there, too.
+    destinations: Vec<Vec<Pose>>,
 }
 
 impl Targets {
-    /// Of an object that is to be placed.
+    /// Of objects of which any one is to be placed.
     pub(super) fn of_grasps(cx: &GoalContext<'_>, scene: &Scene, seed: Seed) -> Self {
-        let hands = cx.problem.grasps[cx.object].grasps.clone();
-        let world_from_object = scene.world_from_body(cx.body());
-        let part_from_tool: Vec<Pose> = hands.iter().map(|grasp| grasp.object_from_tool).collect();
-        let destinations = match cx.goal() {
-            Goal::Place { destination, .. } => {
-                super::destination_poses(destination, cx.options.destinations, &mut seed.rng())
+        let mut all = Self::default();
+        for (number, cx) in cx.of_targets().iter().enumerate() {
+            let world_from_object = scene.world_from_body(cx.body());
+            for grasp in &cx.problem.grasps[cx.object].grasps {
+                all.hands.push(grasp.clone());
+                all.grasps.push(world_from_object * grasp.object_from_tool);
+                all.part_from_tool.push(grasp.object_from_tool);
+                all.object.push(number);
             }
-            Goal::Open { .. } => vec![],
-        };
-        let grasps = part_from_tool.iter().map(|tool| world_from_object * tool).collect();
-        Self { hands, grasps, part_from_tool, destinations }
+            all.destinations.push(cx.destination().map_or_else(Vec::new, |destination| {
+                super::destination_poses(destination, cx.options.destinations, &mut seed.rng())
+            }));
+        }
+        all
+    }
+
+    /// The same grasps, wherever what they hold is going.
+    pub(super) fn without_destinations(self) -> Self {
+        Self { destinations: vec![vec![]; self.destinations.len()], ..self }
     }
 
     /// Of an object in the hand: its destinations.
@@ -63,7 +72,8 @@ impl Targets {
             hands: vec![grasp.clone(); count],
             grasps: (0..count).map(pose).collect(),
             part_from_tool: vec![grasp.object_from_tool; count],
-            destinations: vec![],
+            object: vec![0; count],
+            destinations: vec![vec![]],
         }
     }
 
@@ -74,13 +84,14 @@ impl Targets {
         let usable = cages.iter().filter(|cage| cage.hold.moves(way.to > way.from));
         let part_from_tool: Vec<Pose> = usable.clone().map(|cage| cage.grasp.part_from_tool).collect();
         let Some(mechanism) = Mechanism::of_article(article) else {
-            return Self { hands: vec![], grasps: vec![], part_from_tool: vec![], destinations: vec![] };
+            return Self::default();
         };
         let now = mechanism.world_from_part(way.from);
         let hands = usable.map(|cage| as_grasp(cx, scene, cage, &now)).collect();
-        let grasps = part_from_tool.iter().map(|tool| now * tool).collect();
+        let grasps: Vec<Pose> = part_from_tool.iter().map(|tool| now * tool).collect();
         let at = |share: f64| mechanism.world_from_part(way.from + share * (way.to - way.from));
-        Self { hands, grasps, part_from_tool, destinations: [0.5, 1.0].map(at).into() }
+        let object = vec![0; grasps.len()];
+        Self { hands, grasps, part_from_tool, object, destinations: vec![[0.5, 1.0].map(at).into()] }
     }
 }
 
@@ -115,7 +126,8 @@ impl ReachedBases<'_, '_> {
 
     /// Whether a destination, drawn at random, is within reach from `base` with this grasp.
     fn puts_down(&self, base: &[f64; 3], grasp: usize, rng: &mut Rng) -> bool {
-        let Targets { part_from_tool, destinations, .. } = self.targets;
+        let Targets { part_from_tool, object, destinations, .. } = self.targets;
+        let destinations = &destinations[object[grasp]];
         let reached = |at: &Pose| self.density(base, &(at * part_from_tool[grasp])) > 0.0;
         destinations.is_empty() || reached(&destinations[rng.below(destinations.len())])
     }
@@ -153,15 +165,17 @@ impl BaseDistribution for ReachedBases<'_, '_> {
 
 /// The robot and its surroundings, as far as placing the base needs them.
 pub(super) struct Standing<'c, 'a> {
-    pub(super) cx: &'c GoalContext<'a>,
-    pub(super) scene: &'c Scene,
-    /// What `grasps` of the targets are made of.
-    pub(super) hands: &'c [Grasp],
+    /// The goal, for each of its objects.
+    cxs: Vec<GoalContext<'a>>,
+    scene: &'c Scene,
+    targets: &'c Targets,
     /// What is in the hand already, to be put down: poses of the tool are those of its destinations.
-    pub(super) load: Option<Unloading>,
-    pub(super) drive: &'c Drive,
-    pub(super) folded: &'c Configuration,
-    pub(super) rng: Rng,
+    load: Option<Unloading>,
+    drive: &'c Drive,
+    folded: &'c Configuration,
+    rng: Rng,
+    /// The object that was asked about last.
+    object: usize,
 }
 
 /// An object in the hand, and where it may go.
@@ -172,7 +186,25 @@ pub(super) struct Unloading {
     pub(super) rejections: Rejections,
 }
 
-impl Standing<'_, '_> {
+impl<'c, 'a> Standing<'c, 'a> {
+    /// The robot with its arm as in `folded`; what it holds is one object, the one of `cx`.
+    pub(super) fn new(
+        cx: &GoalContext<'a>,
+        scene: &'c Scene,
+        targets: &'c Targets,
+        load: Option<Unloading>,
+        drive: &'c Drive,
+        folded: &'c Configuration,
+        rng: Rng,
+    ) -> Self {
+        let cxs = if load.is_some() { vec![*cx] } else { cx.of_targets() };
+        Self { cxs, scene, targets, load, drive, folded, rng, object: 0 }
+    }
+
+    fn cx(&self) -> &GoalContext<'a> {
+        &self.cxs[self.object]
+    }
+
     fn at(&self, base: &[f64; 3]) -> Configuration {
         let mut q = self.folded.clone();
         q.set(&self.drive.dofs, base);
@@ -186,8 +218,9 @@ impl Standing<'_, '_> {
 
 impl PlacementProblem for Standing<'_, '_> {
     fn grasp_is_free(&mut self, _: usize, number: usize) -> Result<(), Obstruction> {
-        let Self { cx, scene, hands, load, .. } = self;
-        let grasp = &hands[number];
+        self.object = self.targets.object[number];
+        let Self { cxs, scene, targets, load, object, .. } = self;
+        let (cx, grasp) = (&cxs[*object], &targets.hands[number]);
         let free = match load {
             None => {
                 let world_from_tool = scene.world_from_body(cx.body()) * grasp.object_from_tool;
@@ -203,21 +236,24 @@ impl PlacementProblem for Standing<'_, '_> {
     }
 
     fn base_is_free(&mut self, _: usize, base: &[f64; 3]) -> Result<(), Obstruction> {
-        let Self { cx, scene, drive, folded, .. } = *self;
+        let (cx, scene, drive, folded) = (self.cx(), self.scene, self.drive, self.folded);
         let (rules, resolution) = (cx.free(self.grip()), cx.options.resolution);
         let mut checker = RobotChecker::new(scene, &drive.space, &drive.dofs, folded, rules, resolution);
         checker.state(base).map(|_| ())
     }
 
     fn solutions(&mut self, _: usize, base: &[f64; 3], world_from_tool: &Pose) -> Vec<Vec<f64>> {
-        let cx = self.cx;
+        if let Some(grasp) = self.targets.grasps.iter().position(|grasp| grasp == world_from_tool) {
+            self.object = self.targets.object[grasp];
+        }
+        let cx = *self.cx();
         let arm = cx.problem.arm_at(&self.at(base));
         let near = cx.arm_values(self.folded);
         let rounds = if arm.free_variables().is_empty() { 1 } else { cx.options.free_samples as usize };
         let mut scratch = IkSolutions::new();
         let mut found = Vec::new();
         for round in 0..rounds {
-            let free = free_values(cx, round, &near, &mut self.rng);
+            let free = free_values(&cx, round, &near, &mut self.rng);
             let (solutions, _) = arm.inverse(world_from_tool, &free, &near, &mut scratch);
             found.extend(solutions.into_iter().map(|q| [base.as_slice(), &q].concat()));
         }
@@ -227,7 +263,7 @@ impl PlacementProblem for Standing<'_, '_> {
     fn is_free(&mut self, q: &[f64]) -> Result<(), Obstruction> {
         let (base, arm) = q.split_at(3);
         let stands = self.at(&[base[0], base[1], base[2]]);
-        let cx = self.cx;
+        let cx = self.cx();
         let (q, rules) = match self.grip() {
             None => (cx.with_fingers(&stands, &cx.gripper().preshapes[0].values), cx.touching()),
             // The fingers are closed since the object was taken.

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use robotc_core::task::Task;
 use robotc_core::{LinkIdx, Pose, Trajectory};
 
 use super::Rejections;
@@ -129,6 +130,22 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// Position in `Task::objects` of the object that was put down for a goal, if one was.
+    pub fn object_of(&self, goal: usize) -> Option<usize> {
+        self.choices.iter().find_map(|choice| match choice {
+            Choice::Place(choice) if choice.goal == goal => Some(choice.object),
+            _ => None,
+        })
+    }
+
+    /// The name of what a goal is about: the object that was taken, or the article.
+    pub fn name_of<'t>(&self, task: &'t Task, goal: usize) -> &'t str {
+        match self.object_of(goal) {
+            Some(object) => &task.objects[object].name,
+            None => task.name_of(&task.goals[goal]),
+        }
+    }
+
     /// Whether every goal of the task is reached.
     pub fn is_complete(&self) -> bool {
         self.skipped.is_empty()
@@ -157,6 +174,14 @@ impl Choice {
             Self::Open(choice) => choice.goal,
         }
     }
+
+    /// The objects that would have done as well; none for articles.
+    pub fn passed_over(&self) -> &[PassedOver] {
+        match self {
+            Self::Place(choice) => &choice.passed_over,
+            Self::Open(_) => &[],
+        }
+    }
 }
 
 /// How an object is put down.
@@ -172,6 +197,32 @@ pub struct PlaceChoice {
     pub world_from_object: Pose,
     /// What was looked at and not taken on the way.
     pub rejections: Rejections,
+    /// The other objects that would have done.
+    pub passed_over: Vec<PassedOver>,
+}
+
+/// An object that a goal allows and a plan does not take.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PassedOver {
+    /// Position in `Task::objects`.
+    pub object: usize,
+    /// Its name.
+    pub name: String,
+    /// How many of its grasps were looked at before another object was taken.
+    pub tried: Tried,
+    /// Why these were rejected; nothing when the other object's grasps were more promising.
+    pub rejections: Rejections,
+}
+
+impl fmt::Display for PassedOver {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, tried: Tried { known, looked_at, usable }, rejections, .. } = self;
+        if *looked_at == 0 && rejections.is_empty() {
+            return write!(f, "{name}: none of its {known} grasps looked at");
+        }
+        write!(f, "{name}: {usable} usable of {looked_at} looked at of {known}")?;
+        if rejections.is_empty() { Ok(()) } else { write!(f, " ({rejections})") }
+    }
 }
 
 /// How an article is moved.
@@ -235,6 +286,18 @@ impl fmt::Display for Nearest {
     }
 }
 
+impl std::ops::Add for Tried {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            known: self.known + other.known,
+            looked_at: self.looked_at + other.looked_at,
+            usable: self.usable + other.usable,
+        }
+    }
+}
+
 /// Why a goal is not reached.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GoalFailure {
@@ -250,6 +313,8 @@ pub struct GoalFailure {
     pub tried: Tried,
     /// What each filter rejected, and what touched what.
     pub rejections: Rejections,
+    /// Where any of several objects would have done, what came of each.
+    pub passed_over: Vec<PassedOver>,
     /// How near the free motions came that did not arrive.
     pub nearest: Option<Nearest>,
 }
@@ -264,6 +329,7 @@ impl GoalFailure {
             interrupt: None,
             tried: Tried::default(),
             rejections: Rejections::default(),
+            passed_over: Vec::new(),
             nearest: None,
         })
     }
@@ -291,7 +357,9 @@ impl fmt::Display for GoalFailure {
         if let Some(nearest) = self.nearest {
             write!(f, "; {nearest}")?;
         }
-        if !self.rejections.is_empty() {
+        if !self.passed_over.is_empty() {
+            self.passed_over.iter().try_for_each(|object| write!(f, "; {object}"))?;
+        } else if !self.rejections.is_empty() {
             write!(f, " ({})", self.rejections)?;
         }
         Ok(())

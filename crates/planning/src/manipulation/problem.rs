@@ -2,7 +2,7 @@
 
 use robotc_core::ids::Idx;
 use robotc_core::robot::{Gripper, Robot};
-use robotc_core::task::{Goal, Task};
+use robotc_core::task::{Destination, Goal, Task};
 use robotc_core::{BodyIdx, Configuration, DofIdx, Kinematics, LinkIdx, Pose, RobotModel};
 
 use super::options::ManipulationOptions;
@@ -64,8 +64,11 @@ pub(super) struct GoalContext<'a> {
     pub(super) options: &'a ManipulationOptions,
     /// Position of the goal in the task.
     pub(super) number: usize,
-    /// Position of the object in the task, the scene and the grasp sets; of an article, its handle in the scene.
+    /// Position of the object in the task, the scene and the grasp sets, the first one where several will do; of an article, its
+    /// handle in the scene.
     pub(super) object: usize,
+    /// Positions of objects that are to be left where they are: other goals put them there.
+    pub(super) done: &'a [usize],
     /// Position of the gripper in the robot.
     pub(super) gripper: usize,
     /// Links of the gripper, ascending.
@@ -93,7 +96,28 @@ impl<'a> GoalContext<'a> {
     }
 
     pub(super) fn object_name(&self) -> &'a str {
-        self.problem.task.name_of(self.goal())
+        match self.goal() {
+            Goal::Place { .. } => &self.problem.task.objects[self.object].name,
+            Goal::Open { .. } => self.problem.task.name_of(self.goal()),
+        }
+    }
+
+    /// The goal for each of its objects that may still be taken; for an article, itself.
+    pub(super) fn of_targets(&self) -> Vec<Self> {
+        match self.goal().targets() {
+            [] => vec![*self],
+            [target] => vec![Self { object: target.object, ..*self }],
+            several => {
+                let left = several.iter().filter(|target| !self.done.contains(&target.object));
+                left.map(|target| Self { object: target.object, ..*self }).collect()
+            }
+        }
+    }
+
+    /// Where the object may end up.
+    pub(super) fn destination(&self) -> Option<&'a Destination> {
+        let target = self.goal().targets().iter().find(|target| target.object == self.object);
+        target.map(|target| &target.destination)
     }
 
     /// Rules of free motion.

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use robotc_core::ids::Idx;
-use robotc_core::task::{Article, Goal};
+use robotc_core::task::{Article, Goal, Task};
 use robotc_core::{BodyIdx, Configuration, Seed};
 use thiserror::Error;
 
@@ -98,15 +98,17 @@ pub fn pick_and_place(
             observer.goal(number);
             // A base that drives may have taken the arm along.
             let arm = problem.arm_at(&q);
+            let done = taken(problem.task, &plan, number);
             let problem = Manipulation { arm: &arm, ..*problem };
             let cx = GoalContext {
                 problem,
                 options,
                 number,
                 object: match problem.task.goals[number] {
-                    Goal::Place { object, .. } => object,
+                    Goal::Place { ref targets, .. } => targets[0].object,
                     Goal::Open { article, .. } => problem.handle_of(article),
                 },
+                done: &done,
                 gripper,
                 gripper_links: &links,
                 finger_space: &fingers,
@@ -162,4 +164,18 @@ pub fn pick_and_place(
         None if !skipped.is_empty() => Err(PlanFailure::NoGoal(skipped)),
         None => Ok(plan),
     }
+}
+
+/// Objects that a goal with a choice leaves alone: those that other goals have put down, or that another goal asks for by name.
+fn taken(task: &Task, plan: &Plan, number: usize) -> Vec<usize> {
+    let others = task.goals.iter().enumerate().filter(|(other, _)| *other != number);
+    let named = others.filter_map(|(_, goal)| match goal.targets() {
+        [target] => Some(target.object),
+        _ => None,
+    });
+    let put_down = plan.choices.iter().filter_map(|choice| match choice {
+        Choice::Place(choice) => Some(choice.object),
+        Choice::Open(_) => None,
+    });
+    named.chain(put_down).collect()
 }

@@ -1,12 +1,9 @@
 //! Which grasps of an object can be used for a goal, asked without planning the free motions in between.
 
-use robotc_core::task::Goal;
 use robotc_core::{Pose, Seed};
 
-use super::destinations::destination_poses;
 use super::options::ManipulationOptions;
-use super::picks::{Lifted, PickSampler};
-use super::placings::Destinations;
+use super::picks::{Lifted, PickSampler, Target};
 use super::plan::Tried;
 use super::problem::{GoalContext, Manipulation, finger_space, gripper_links};
 use super::rejections::Rejections;
@@ -16,6 +13,8 @@ use crate::goal::{GoalDraw, GoalSampler};
 /// A grasp for which approach, lift, lowering and retreat are free, each on one branch of inverse kinematics.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UsableGrasp {
+    /// Position in `Task::objects`.
+    pub object: usize,
     /// Position in the object's grasp set.
     pub grasp: usize,
     /// The arm where the straight approach starts.
@@ -43,7 +42,7 @@ pub struct UsableGrasps {
     pub exhausted: bool,
 }
 
-/// Looks for the first `most` usable grasps of the object of goal number `goal` of the task, in the order in which planning tries
+/// Looks for the first `most` usable grasps of the objects of goal number `goal` of the task, in the order in which planning tries
 /// them (thesis algorithms 3.4 to 3.6). `None` when the goal puts nothing down or the arm has no gripper.
 ///
 /// Nothing is computed that the answer does not need: a grasp is looked at when all before it were rejected, a destination when a grasp has
@@ -57,25 +56,22 @@ pub fn usable_grasps(
     seed: Seed,
 ) -> Result<Option<UsableGrasps>, Interrupt> {
     let robot = &*problem.task.robot;
-    let Goal::Place { object, destination, keep_upright } = &problem.task.goals[goal] else {
-        return Ok(None);
-    };
+    let [first, ..] = problem.task.goals[goal].targets() else { return Ok(None) };
     let Some(gripper) = robot.arms[problem.task.arm].gripper else { return Ok(None) };
     let (links, fingers) = (gripper_links(robot, gripper), finger_space(robot, gripper));
     let cx = GoalContext {
         problem: *problem,
         options,
         number: goal,
-        object: *object,
+        object: first.object,
+        done: &[],
         gripper,
         gripper_links: &links,
         finger_space: &fingers,
     };
-    let poses = destination_poses(destination, options.destinations, &mut seed.split("destination").rng());
-    let mut destinations = Destinations::new(poses);
-    let (scene, set, rng) = (problem.scene, problem.grasps[*object], seed.split("grasps").rng());
-    let (q, tilt, lifted) = (problem.start, *keep_upright, Lifted::PutDown);
-    let mut sampler = PickSampler::new(cx, scene, set, &mut destinations, q, tilt, lifted, rng);
+    let targets = cx.of_targets().into_iter().map(|cx| Target::new(cx, seed.split("destination"))).collect();
+    let (q, rng) = (problem.start, seed.split("grasps").rng());
+    let mut sampler = PickSampler::new(targets, problem.scene, q, Lifted::PutDown, rng);
     let mut exhausted = false;
     while sampler.found.len() < most && !exhausted {
         exhausted = sampler.draw(budget)? == GoalDraw::Exhausted;
@@ -84,6 +80,7 @@ pub fn usable_grasps(
     let found = sampler.found.iter().filter_map(|pick| {
         let placing = pick.placing.as_ref()?;
         Some(UsableGrasp {
+            object: sampler.targets[pick.target].cx.object,
             grasp: pick.grasp,
             approach: first(&pick.approach),
             at_grasp: first(&pick.lift),
@@ -92,7 +89,11 @@ pub fn usable_grasps(
         })
     });
     let found = found.collect();
-    let (tried, rejections) = (sampler.tried(), sampler.rejections.clone());
-    let destinations = sampler.destinations.counts();
+    let (tried, mut rejections, mut destinations) = (sampler.tried(), Rejections::default(), [0, 0]);
+    for target in &sampler.targets {
+        rejections.merge(&target.rejections);
+        let [known, looked_at] = target.destinations.counts();
+        destinations = [destinations[0] + known, destinations[1] + looked_at];
+    }
     Ok(Some(UsableGrasps { found, tried, destinations, rejections, exhausted }))
 }

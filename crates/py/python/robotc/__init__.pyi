@@ -41,11 +41,19 @@ class Step(TypedDict):
     level: int
 
 class Segment(TypedDict):
-    """A motion of a plan; `kind` is preshape, reach, approach, grasp, lift, carry, lower, release, retreat or open."""
+    """A motion of a plan; `kind` is preshape, reach, approach, grasp, lift, carry, lower, release, retreat, open, fold or drive."""
 
     kind: str
     object: str
     duration: float
+
+class Choice(TypedDict):
+    """What was taken for goal number `goal` of a task. `passed_over` says of each other object that would have done how many of its
+    grasps were looked at, and why these were rejected."""
+
+    goal: int
+    object: str
+    passed_over: list[str]
 
 class Contact(TypedDict):
     """Where a path first meets something: on the way from state `edge` to the next. `link` and `body` are empty, and `depth` zero,
@@ -322,5 +330,8 @@ class Plan:
     def accelerations(self) -> Array: ...
     @property
     def segments(self) -> list[Segment]: ...
+    @property
+    def choices(self) -> list[Choice]:
+        """What was taken for each goal reached, in order."""
     def execute(self, view: Path | None = None, glb: Path | None = None) -> dict[str, Array]:
         """Final pose of each object, after a kinematic simulation; writes a replay page or a binary glTF file."""

@@ -61,8 +61,8 @@ fn an_object_is_carried_to_a_table_too_far_away() {
     let far = ([0.7, 1.4, 0.05], [-3.0, 0.0, TABLE - 0.025]);
     let wall = ([0.1, 3.0, 1.2], [0.0, 2.2, 0.6]);
     for (seed, tilt) in [(0, None), (1, None), (2, Some(0.2))] {
-        let Goal::Place { object, destination, .. } = anywhere([-3.0, 0.2], 0.3) else { unreachable!() };
-        let goal = Goal::Place { object, destination, keep_upright: tilt };
+        let targets = anywhere([-3.0, 0.2], 0.3).targets().to_vec();
+        let goal = Goal::Place { targets, keep_upright: tilt };
         let bench =
             mobile_bench(3.0, &[([3.0, -0.2], goal)], &[far, ([0.1, 0.1, 0.1], [0.0, 1.0, 1.5]), wall]);
         let plan = run(&bench, seed, &Budget::unlimited()).unwrap_or_else(|e| panic!("{e}"));
@@ -98,6 +98,7 @@ fn an_arm_folds_with_what_it_holds() {
         options: &options,
         number: 0,
         object: 0,
+        done: &[],
         gripper: 0,
         gripper_links: &links,
         finger_space: &fingers,

@@ -8,7 +8,7 @@ use robotc_core::geom::{ConvexParts, box_part};
 use robotc_core::ids::Idx;
 use robotc_core::model::Shape;
 use robotc_core::robot::Robot;
-use robotc_core::task::{Destination, Goal, Object, Task};
+use robotc_core::task::{Destination, Goal, Object, Target, Task};
 use robotc_core::world::World;
 use robotc_core::{Kinematics, LinkIdx, Pose, Seed, TypedVec};
 
@@ -21,6 +21,7 @@ use crate::scene::{RobotChecker, Rules, Scene};
 use crate::testbed;
 
 mod driving;
+mod several;
 
 /// Top of the table.
 const TABLE: f64 = 0.125;
@@ -129,7 +130,8 @@ fn bench_of(
 
 fn place(object: usize, [x, y]: [f64; 2], any_yaw: bool, keep_upright: Option<f64>) -> Goal {
     let world_from_object = Pose::translation(x, y, STANDING);
-    Goal::Place { object, destination: Destination::Pose { world_from_object, any_yaw }, keep_upright }
+    let destination = Destination::Pose { world_from_object, any_yaw };
+    Goal::Place { targets: vec![Target { object, destination }], keep_upright }
 }
 
 fn problem<'a>(bench: &'a Bench, grasps: &'a [&'a GraspSet]) -> Manipulation<'a> {
@@ -205,7 +207,9 @@ fn grasps_with_room_and_within_reach_are_tried_first() {
         let sets = [&bench.grasps];
         let problem = Manipulation { reachability: map, ..problem(&bench, &sets) };
         let gripper = &bench.task.robot.grippers[0];
-        ranking::ranking(&problem, gripper, &bench.scene, robotc_core::BodyIdx::new(0), &bench.grasps)
+        let objects = [(robotc_core::BodyIdx::new(0), &bench.grasps)];
+        let order = ranking::ranking(&problem, gripper, &bench.scene, &objects);
+        order.into_iter().map(|(_, grasp)| grasp).collect::<Vec<usize>>()
     };
     let heights = [8, 9, 10, 11, 4, 5, 6, 7, 0, 1, 2, 3];
     assert_eq!(order(&[], None), heights, "the palm has most room above the table");
@@ -248,7 +252,8 @@ fn regions_are_filled_one_by_one() {
         size: [0.25, 0.25],
         origin_height: STANDING - TABLE,
     };
-    let goal = |object| Goal::Place { object, destination: region.clone(), keep_upright: None };
+    let target = |object| Target { object, destination: region.clone() };
+    let goal = |object| Goal::Place { targets: vec![target(object)], keep_upright: None };
     let moves = [([0.55, -0.1], goal(0)), ([0.6, -0.25], goal(1)), ([0.5, -0.4], goal(2))];
     let plan = run(&bench(false, &moves, &[]), 3, &Budget::unlimited()).unwrap_or_else(|e| panic!("{e}"));
     assert!(plan.is_complete());
@@ -381,6 +386,7 @@ fn what_the_planner_takes_for_free_near_objects_is_free_at_a_finer_look() {
             options: &options,
             number: 0,
             object: 0,
+            done: &[],
             gripper: 0,
             gripper_links: &links,
             finger_space: &fingers,
@@ -406,7 +412,7 @@ fn what_the_planner_takes_for_free_near_objects_is_free_at_a_finer_look() {
 fn anywhere([x, y]: [f64; 2], side: f64) -> Goal {
     let world_from_region = Pose::translation(x, y, TABLE + 1e-4);
     let destination = Destination::Region { world_from_region, size: [side; 2], origin_height: 0.06 };
-    Goal::Place { object: 0, destination, keep_upright: None }
+    Goal::Place { targets: vec![Target { object: 0, destination }], keep_upright: None }
 }
 
 #[test]
