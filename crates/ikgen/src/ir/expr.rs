@@ -168,8 +168,8 @@ impl Exprs {
         }
     }
 
-    /// `f(a, b)`, simplified: constants folded, neutral elements removed, signs moved outward, operands of sums and
-    /// products ordered by age.
+    /// `f(a, b)`, simplified: constants folded and gathered, neutral elements removed, signs moved outward, operands of
+    /// sums and products ordered by age.
     pub fn binary(&mut self, f: Binary, a: Expr, b: Expr) -> Expr {
         let negated = |e: &Self, x: Expr| match e.node(x) {
             Node::Unary(Unary::Neg, y) => Some(y),
@@ -274,9 +274,44 @@ impl Exprs {
                 }
             }
         }
+        if let Some(sum) = self.gathered(f, a, b) {
+            return sum;
+        }
         let commutes = !matches!(f, Binary::Sub | Binary::Div | Binary::AngleOf);
         let (a, b) = if commutes && b < a { (b, a) } else { (a, b) };
         self.intern(Node::Binary(f, a, b))
+    }
+
+    /// A sum or difference in which two constants meet: `(a + c) + (b + d) = (a + b) + (c + d)`.
+    fn gathered(&mut self, f: Binary, a: Expr, b: Expr) -> Option<Expr> {
+        if !matches!(f, Binary::Add | Binary::Sub) {
+            return None;
+        }
+        let ((a, c), (b, d)) = (self.split(a)?, self.split(b)?);
+        let (c, d) = (self.constant(c), self.constant(d));
+        let constant = self.binary(f, c, d);
+        let rest = match (a, b) {
+            (Some(a), Some(b)) => self.binary(f, a, b),
+            (Some(a), None) => a,
+            (None, Some(b)) if f == Binary::Sub => self.unary(Unary::Neg, b),
+            (None, b) => b?,
+        };
+        Some(self.binary(Binary::Add, rest, constant))
+    }
+
+    /// What a constant is added to, if anything, and the constant; none of an expression without one.
+    fn split(&mut self, e: Expr) -> Option<(Option<Expr>, f64)> {
+        if let Some(c) = self.as_constant(e) {
+            return Some((None, c));
+        }
+        let Node::Binary(f @ (Binary::Add | Binary::Sub), a, b) = self.node(e) else { return None };
+        match (f, self.as_constant(a), self.as_constant(b)) {
+            (Binary::Sub, None, Some(c)) => Some((Some(a), -c)),
+            (Binary::Sub, Some(c), None) => Some((Some(self.unary(Unary::Neg, b)), c)),
+            (_, None, Some(c)) => Some((Some(a), c)),
+            (_, Some(c), None) => Some((Some(b), c)),
+            _ => None,
+        }
     }
 
     /// The same node with other operands, simplified.

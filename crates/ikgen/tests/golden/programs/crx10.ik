@@ -19,115 +19,114 @@ slack 0.0
   let t9 = t8 * t8
   let t10 = 0.011479591836734693 + 0.5 * (t7 + t9)
   let t11 = t1 * t1 + t3 * t3 + t5 * t5
-  let t12 = 0.011479591836734693 + t11
-  let t13 = -0.10841836734693872 + t12
-  let t14 = t4 * 0.5510204081632654
-  let t15 = t13 - t14
-  let t16 = t13 + t14
-  let t17 = t8 * -0.21428571428571427
-  let t18 = r20 * -0.0826530612244898
-  let t19 = t17 - t18
-  let t20 = t17 + t18
-  let t21 = t19 * t20
-  let t22 = r21 * -0.0826530612244898
-  let t23 = t6 * -0.21428571428571427
-  let t24 = t22 - t23
-  let t25 = t22 + t23
-  let t26 = t24 * t25
-  let t27 = t15 * t16 + 0.5 * (t21 - t26)
-  let t28 = t8 * -0.10714285714285714
-  let t29 = t28 + t28
-  let t30 = t20 * t15 + t19 * t16
-  let t31 = t29 * t30
-  let t32 = t6 * -0.10714285714285714
-  let t33 = t32 + t32
-  let t34 = t24 * t16 - t25 * t15
-  let t35 = t33 * t34
-  let t36 = 0.5 * (t7 - t9)
-  let t37 = 0.5 * (t21 + t26)
-  let t38 = t36 * t37
-  let t39 = t6 * t8
-  let t40 = 0.5 * (t39 + t39)
-  let t41 = 0.5 * (t20 * t24 - t19 * t25)
-  let t42 = t40 * t41
-  let t43 = t12 + -0.014744897959183663
-  let t44 = t12 + -0.7971938775510203
-  let t45 = t23 * t23
-  let t46 = t17 * t17
-  let t47 = t43 * t44 + 0.5 * (t45 + t46)
-  let t48 = t11 - 0.011479591836734693
-  let t49 = t4 * -1.4285714285714286
-  let t50 = r21 * t48 + t6 * t49
-  let t51 = r21 * t50
-  let t52 = r20 * t48 + t8 * t49
-  let t53 = r20 * t52
-  let t54 = 0.5 * (t51 + t53)
-  let t55 = t23 * t43 + t23 * t44
-  let t56 = t4 * 0.15306122448979592
-  let t57 = r21 * t56
-  let t58 = t55 * t57
-  let t59 = t17 * t43 + t17 * t44
-  let t60 = r20 * t56
-  let t61 = t59 * t60
-  let t62 = 0.5 * (t45 - t46)
-  let t63 = 0.5 * (t51 - t53)
-  let t64 = t62 * t63
-  let t65 = t17 * t23
-  let t66 = 0.5 * (t65 + t65)
-  let t67 = 0.5 * (r21 * t52 + r20 * t50)
-  let t68 = t66 * t67
-  let t69 = t33 * t37
-  let t70 = t29 * t41
-  let t71 = t34 * t36
-  let t72 = t30 * t40
-  let t73 = t55 * t63
-  let t74 = t59 * t67
-  let t75 = t57 * t62
-  let t76 = t60 * t66
-  let t77 = t29 * t37
-  let t78 = t33 * t41
-  let t79 = t30 * t36
-  let t80 = t34 * t40
-  let t81 = t55 * t67
-  let t82 = t59 * t63
-  let t83 = t57 * t66
-  let t84 = t60 * t62
-  octic(t10 * t27 + 0.5 * (t31 - t35) - 0.5 * (t38 + t42) + (t47 * t54 + 0.5 * (t58 + t61) + 0.5 * (t64 + t68)), t34 * t10 - t33 * t27 + 0.5 * (t69 + t70) + 0.5 * (t71 - t72) - (t57 * t47 + t55 * t54 + 0.5 * (t73 + t74) + 0.5 * (t75 + t76)), t30 * t10 + t29 * t27 + 0.5 * (t77 - t78) - 0.5 * (t79 + t80) + (t60 * t47 + t59 * t54 + 0.5 * (t81 - t82) + 0.5 * (t83 - t84)), t36 * t27 - (t37 * t10 + 0.5 * (t31 + t35)) + (t63 * t47 + 0.5 * (t58 - t61) + t62 * t54), t41 * t10 + 0.5 * (t29 * t34 - t30 * t33) - t40 * t27 - (t67 * t47 + 0.5 * (t55 * t60 + t57 * t59) + t66 * t54), 0.5 * (t69 - t70) + 0.5 * (t71 + t72) + (0.5 * (t74 - t73) + 0.5 * (t76 - t75)), 0.5 * (t79 - t80) - 0.5 * (t77 + t78) + (0.5 * (t81 + t82) + 0.5 * (t83 + t84)), 0.5 * (t42 - t38) + 0.5 * (t64 - t68), 0.5 * (t36 * t41 + t37 * t40) - 0.5 * (t62 * t67 + t63 * t66)) -> c6 s6 {
+  let t12 = -0.09693877551020402 + t11
+  let t13 = t4 * 0.5510204081632654
+  let t14 = t12 - t13
+  let t15 = t12 + t13
+  let t16 = t8 * -0.21428571428571427
+  let t17 = r20 * -0.0826530612244898
+  let t18 = t16 - t17
+  let t19 = t16 + t17
+  let t20 = t18 * t19
+  let t21 = r21 * -0.0826530612244898
+  let t22 = t6 * -0.21428571428571427
+  let t23 = t21 - t22
+  let t24 = t21 + t22
+  let t25 = t23 * t24
+  let t26 = t14 * t15 + 0.5 * (t20 - t25)
+  let t27 = t8 * -0.10714285714285714
+  let t28 = t27 + t27
+  let t29 = t19 * t14 + t18 * t15
+  let t30 = t28 * t29
+  let t31 = t6 * -0.10714285714285714
+  let t32 = t31 + t31
+  let t33 = t23 * t15 - t24 * t14
+  let t34 = t32 * t33
+  let t35 = 0.5 * (t7 - t9)
+  let t36 = 0.5 * (t20 + t25)
+  let t37 = t35 * t36
+  let t38 = t6 * t8
+  let t39 = 0.5 * (t38 + t38)
+  let t40 = 0.5 * (t19 * t23 - t18 * t24)
+  let t41 = t39 * t40
+  let t42 = t11 + -0.00326530612244897
+  let t43 = t11 + -0.7857142857142856
+  let t44 = t22 * t22
+  let t45 = t16 * t16
+  let t46 = t42 * t43 + 0.5 * (t44 + t45)
+  let t47 = t11 - 0.011479591836734693
+  let t48 = t4 * -1.4285714285714286
+  let t49 = r21 * t47 + t6 * t48
+  let t50 = r21 * t49
+  let t51 = r20 * t47 + t8 * t48
+  let t52 = r20 * t51
+  let t53 = 0.5 * (t50 + t52)
+  let t54 = t22 * t42 + t22 * t43
+  let t55 = t4 * 0.15306122448979592
+  let t56 = r21 * t55
+  let t57 = t54 * t56
+  let t58 = t16 * t42 + t16 * t43
+  let t59 = r20 * t55
+  let t60 = t58 * t59
+  let t61 = 0.5 * (t44 - t45)
+  let t62 = 0.5 * (t50 - t52)
+  let t63 = t61 * t62
+  let t64 = t16 * t22
+  let t65 = 0.5 * (t64 + t64)
+  let t66 = 0.5 * (r21 * t51 + r20 * t49)
+  let t67 = t65 * t66
+  let t68 = t32 * t36
+  let t69 = t28 * t40
+  let t70 = t33 * t35
+  let t71 = t29 * t39
+  let t72 = t54 * t62
+  let t73 = t58 * t66
+  let t74 = t56 * t61
+  let t75 = t59 * t65
+  let t76 = t28 * t36
+  let t77 = t32 * t40
+  let t78 = t29 * t35
+  let t79 = t33 * t39
+  let t80 = t54 * t66
+  let t81 = t58 * t62
+  let t82 = t56 * t65
+  let t83 = t59 * t61
+  octic(t10 * t26 + 0.5 * (t30 - t34) - 0.5 * (t37 + t41) + (t46 * t53 + 0.5 * (t57 + t60) + 0.5 * (t63 + t67)), t33 * t10 - t32 * t26 + 0.5 * (t68 + t69) + 0.5 * (t70 - t71) - (t56 * t46 + t54 * t53 + 0.5 * (t72 + t73) + 0.5 * (t74 + t75)), t29 * t10 + t28 * t26 + 0.5 * (t76 - t77) - 0.5 * (t78 + t79) + (t59 * t46 + t58 * t53 + 0.5 * (t80 - t81) + 0.5 * (t82 - t83)), t35 * t26 - (t36 * t10 + 0.5 * (t30 + t34)) + (t62 * t46 + 0.5 * (t57 - t60) + t61 * t53), t40 * t10 + 0.5 * (t28 * t33 - t29 * t32) - t39 * t26 - (t66 * t46 + 0.5 * (t54 * t59 + t56 * t58) + t65 * t53), 0.5 * (t68 - t69) + 0.5 * (t70 + t71) + (0.5 * (t73 - t72) + 0.5 * (t75 - t74)), 0.5 * (t78 - t79) - 0.5 * (t76 + t77) + (0.5 * (t80 + t81) + 0.5 * (t82 + t83)), 0.5 * (t41 - t37) + 0.5 * (t63 - t67), 0.5 * (t35 * t40 + t36 * t39) - 0.5 * (t61 * t66 + t62 * t65)) -> c6 s6 {
     # the triangle of shoulder, elbow and wrist: joint 3
-    let t87 = r00 * s6 - r01 * c6
-    let t88 = t0 + -0.15 * t87
-    let t89 = r10 * s6
-    let t90 = r11 * c6
-    let t91 = t89 - t90
-    let t92 = t2 + -0.15 * t91
-    let t93 = t88 * t88 + t92 * t92
-    let t94 = r20 * s6 - r21 * c6
-    let t95 = t4 + -0.15 * t94
-    let t96 = 0.5102040816326531 * t93
-    let t97 = t90 - t89
-    circle(0.0, 0.7668, t93 + t95 * t95 - 0.7957000000000001) -> c3 s3 {
-      let t100 = 0.71 + 0.54 * s3
-      let t101 = t95 * t100
-      let t102 = 0.54 * c3
-      let t103 = t95 * t102
-      zero(t96, 1e-8) {
+    let t86 = r00 * s6 - r01 * c6
+    let t87 = t0 + -0.15 * t86
+    let t88 = r10 * s6
+    let t89 = r11 * c6
+    let t90 = t88 - t89
+    let t91 = t2 + -0.15 * t90
+    let t92 = t87 * t87 + t91 * t91
+    let t93 = r20 * s6 - r21 * c6
+    let t94 = t4 + -0.15 * t93
+    let t95 = 0.5102040816326531 * t92
+    let t96 = t89 - t88
+    circle(0.0, 0.7668, t92 + t94 * t94 - 0.7957000000000001) -> c3 s3 {
+      let t99 = 0.71 + 0.54 * s3
+      let t100 = t94 * t99
+      let t101 = 0.54 * c3
+      let t102 = t94 * t101
+      zero(t95, 1e-8) {
         # the wrist is above or below the shoulder: joint 1 from the right angle of axes 4 and 5
-        align(t101, -t103) -> c2 s2 {
-          let t106 = c3 * c2 + s3 * s2
-          let t107 = t94 * (c3 * s2 - s3 * c2)
-          circle(-(t87 * t106), -(t91 * t106), -t107) -> c1 s1 {
-            zero(t107 - (t87 * (t106 * c1) + t91 * (t106 * s1)), 0.003) {
+        align(t100, -t102) -> c2 s2 {
+          let t105 = c3 * c2 + s3 * s2
+          let t106 = t93 * (c3 * s2 - s3 * c2)
+          circle(-(t86 * t105), -(t90 * t105), -t106) -> c1 s1 {
+            zero(t106 - (t86 * (t105 * c1) + t90 * (t105 * s1)), 0.003) {
               # what is left of the rotation: joints 4 and 5
-              let t110 = s1 * t97
-              let t111 = t87 * c1
-              let t112 = r02 * c1 + r12 * s1
-              let t113 = r22 * c2 + s2 * t112
-              let t114 = r22 * s2 - c2 * t112
-              let t115 = s3 * t113 - c3 * t114
-              let t116 = r12 * c1 - r02 * s1
-              let t117 = c3 * t113 + s3 * t114
-              align(t87 * s1 - t91 * c1, c3 * (t94 * c2 - s2 * (t110 - t111)) - s3 * (c2 * (t111 - t110) - t94 * s2)) -> c4 s4 {
-                align(t115, s4 * t116 + c4 * t117) -> c5 s5 {
+              let t109 = s1 * t96
+              let t110 = t86 * c1
+              let t111 = r02 * c1 + r12 * s1
+              let t112 = r22 * c2 + s2 * t111
+              let t113 = r22 * s2 - c2 * t111
+              let t114 = s3 * t112 - c3 * t113
+              let t115 = r12 * c1 - r02 * s1
+              let t116 = c3 * t112 + s3 * t113
+              align(t86 * s1 - t90 * c1, c3 * (t93 * c2 - s2 * (t109 - t110)) - s3 * (c2 * (t110 - t109) - t93 * s2)) -> c4 s4 {
+                align(t114, s4 * t115 + c4 * t116) -> c5 s5 {
                   emit angle(c1, s1) angle(c2, s2) angle(c3, s3) angle(c4, s4) angle(c5, s5) angle(c6, s6)
                 }
               }
@@ -137,25 +136,25 @@ slack 0.0
         }
       } else {
       }
-      zero(t96, 1e-20) {
+      zero(t95, 1e-20) {
       } else {
         # the plane of the arm through the wrist: joint 1
-        circle(t92, -t88, 0.0) -> c1_2 s1_2 {
-          let t124 = t88 * c1_2 + t92 * s1_2
-          align(t101 + t102 * t124, t100 * t124 - t103) -> c2_2 s2_2 {
-            let t127 = c3 * c2_2 + s3 * s2_2
-            zero(t94 * (c3 * s2_2 - s3 * c2_2) - (t87 * (c1_2 * t127) + t91 * (s1_2 * t127)), 0.003) {
+        circle(t91, -t87, 0.0) -> c1_2 s1_2 {
+          let t123 = t87 * c1_2 + t91 * s1_2
+          align(t100 + t101 * t123, t99 * t123 - t102) -> c2_2 s2_2 {
+            let t126 = c3 * c2_2 + s3 * s2_2
+            zero(t93 * (c3 * s2_2 - s3 * c2_2) - (t86 * (c1_2 * t126) + t90 * (s1_2 * t126)), 0.003) {
               # what is left of the rotation: joints 4 and 5
-              let t128 = t97 * s1_2
-              let t129 = t87 * c1_2
-              let t130 = r02 * c1_2 + r12 * s1_2
-              let t131 = r22 * c2_2 + s2_2 * t130
-              let t132 = r22 * s2_2 - c2_2 * t130
-              let t133 = s3 * t131 - c3 * t132
-              let t134 = r12 * c1_2 - r02 * s1_2
-              let t135 = c3 * t131 + s3 * t132
-              align(t87 * s1_2 - t91 * c1_2, c3 * (t94 * c2_2 - s2_2 * (t128 - t129)) - s3 * (c2_2 * (t129 - t128) - t94 * s2_2)) -> c4_2 s4_2 {
-                align(t133, s4_2 * t134 + c4_2 * t135) -> c5_2 s5_2 {
+              let t127 = t96 * s1_2
+              let t128 = t86 * c1_2
+              let t129 = r02 * c1_2 + r12 * s1_2
+              let t130 = r22 * c2_2 + s2_2 * t129
+              let t131 = r22 * s2_2 - c2_2 * t129
+              let t132 = s3 * t130 - c3 * t131
+              let t133 = r12 * c1_2 - r02 * s1_2
+              let t134 = c3 * t130 + s3 * t131
+              align(t86 * s1_2 - t90 * c1_2, c3 * (t93 * c2_2 - s2_2 * (t127 - t128)) - s3 * (c2_2 * (t128 - t127) - t93 * s2_2)) -> c4_2 s4_2 {
+                align(t132, s4_2 * t133 + c4_2 * t134) -> c5_2 s5_2 {
                   emit angle(c1_2, s1_2) angle(c2_2, s2_2) angle(c3, s3) angle(c4_2, s4_2) angle(c5_2, s5_2) angle(c6, s6)
                 }
               }

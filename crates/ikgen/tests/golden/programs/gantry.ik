@@ -18,11 +18,11 @@ slack 0.0
       # joint 6: two equations in its cosine and sine
       align((r01 * s4 - r11 * c4) * -0.5, -0.5 * (s4 * r00 - c4 * r10)) -> c6 s6 {
         # joint 1: its length
-        let t12 = 0.95 - (0.95 + c6 * 0.050000000000000044)
-        let t13 = -0.1 + (0.1 - s6 * -0.050000000000000044)
-        let t14 = 0.1 - (py + (r10 * t12 + r11 * t13 + t1))
-        let t15 = 1.0 - (pz + (t12 * r20 + t13 * r21 + t2))
-        quadratic(0.0, 1.0, 0.2 - (px + (r00 * t12 + r01 * t13 + t0))) -> d1 {
+        let t12 = c6 * 0.050000000000000044
+        let t13 = s6 * -0.050000000000000044
+        let t14 = 0.1 - (py + (t1 - (r10 * t12 + r11 * t13)))
+        let t15 = 1.0 - (pz + (t2 - (t12 * r20 + t13 * r21)))
+        quadratic(0.0, 1.0, 0.2 - (px + (t0 - (r00 * t12 + r01 * t13)))) -> d1 {
           # joint 2: its length
           quadratic(0.0, 1.0, t14) -> d2 {
             # joint 3: its length

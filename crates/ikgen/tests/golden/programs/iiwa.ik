@@ -14,7 +14,7 @@ slack 0.0
   let t4 = 0.36 * r21
   let t5 = t0 * t1 + t2 * (t3 - t4)
   let t6 = t0 * (t4 - t3) + t1 * t2
-  let t7 = 1.18 + (1.306 + (px * r00 + py * r10 + pz * r20 - 0.36 * r20) - 1.18) - 1.18
+  let t7 = px * r00 + py * r10 + pz * r20 - 0.36 * r20 + 0.1260000000000001
   let t8 = -t6
   let t9 = r21 * t2 - r22 * t0
   let t10 = r21 * t0 + r22 * t2

@@ -6,18 +6,18 @@ snap 0.0
 slack 0.0
 {
   # height of the meeting point of axes 5 and 6 along the parallel axes: joint 1 alone
-  let t0 = r11 * 0.08
-  let t1 = r21 * 0.1
-  let t2 = r01 * px + r11 * py + r21 * pz
-  let t3 = 0.25 + (t0 + t1 - t2)
-  let t4 = 0.08 * r12
-  let t5 = 0.1 * r22
-  let t6 = px * r02 + py * r12 + pz * r22
-  let t7 = 0.75 + (t4 + t5 - t6)
+  let t0 = r01 * px + r11 * py + r21 * pz
+  let t1 = r11 * 0.08
+  let t2 = r21 * 0.1
+  let t3 = t1 + t2
+  let t4 = px * r02 + py * r12 + pz * r22
+  let t5 = 0.08 * r12
+  let t6 = 0.1 * r22
+  let t7 = t5 + t6
   let t8 = r10 * r10
   let t9 = px * r00 + py * r10 + pz * r20
   let t10 = 0.08 * r10
-  circle(0.25 - t3, 0.75 - t7, 0.16999999999999998) -> c6 s6 {
+  circle(t0 - t3, t4 - t7, 0.16999999999999998) -> c6 s6 {
     # angle between the parallel axes and axis 6: joint 5
     let t13 = r11 * s6 - r12 * c6
     let t14 = r01 * c6 + r02 * s6
@@ -34,8 +34,8 @@ slack 0.0
           # the triangle of axes 2, 3 and 4
           let t25 = s1 * -0.1
           let t26 = 0.1 + 0.1 * c1
-          let t27 = 0.75 + (c6 * (0.75 + (t4 - r02 * t25 + r22 * t26 - t6) - 0.75) - s6 * (0.25 + (t0 - r01 * t25 + r21 * t26 - t2) - 0.25)) - 0.75
-          let t28 = 0.2 + (0.3 + (t9 - (t10 - r00 * t25 + r20 * t26)) - 0.2) - 0.2
+          let t27 = c6 * (t5 - r02 * t25 + r22 * t26 - t4) - s6 * (t1 - r01 * t25 + r21 * t26 - t0)
+          let t28 = 0.09999999999999998 + (t9 - (t10 - r00 * t25 + r20 * t26))
           let t29 = c1 * c2
           let t30 = s1 * c2
           let t31 = c6 * (t18 + r02 * t29 - r22 * t30) - s6 * (t19 + r01 * t29 - r21 * t30)
@@ -59,20 +59,20 @@ slack 0.0
       } else {
         zero(s2 * s2, 1e-6) {
           # axis 6 is parallel too: any value of joint 6 for which axes 2, 3 and 4 close the triangle
-          let t47 = 0.75 + (c6 * (t7 - 0.75) - s6 * (t3 - 0.25)) - 0.75
-          let t48 = t5 * c6 - t1 * s6
+          let t47 = c6 * (t7 - t4) - s6 * (t3 - t0)
+          let t48 = t6 * c6 - t2 * s6
           let t49 = 0.1 * r20
-          let t50 = 0.2 + (0.3 + (t9 - (t10 + t49)) - 0.2) - 0.2
+          let t50 = 0.09999999999999998 + (t9 - (t10 + t49))
           let t51 = 2.0 * (t47 * t48 - t49 * t50)
-          let t52 = 2.0 * (t47 * (c6 * (0.1 * r02) - s6 * (0.1 * r01)) - t50 * (0.1 * r00))
+          let t52 = 2.0 * (t47 * (c6 * (0.1 * r02) - s6 * (r01 * 0.1)) - t50 * (0.1 * r00))
           let t53 = t47 * t47 + t50 * t50 + (t48 * t48 + t49 * t49)
           let t54 = sqrt(t51 * t51 + t52 * t52)
           circle(t51, t52, 0.5 * (max(0.0025000000000000044, t53 - t54) + min(0.5625, t53 + t54)) - t53) -> c1_2 s1_2 {
             # the triangle of axes 2, 3 and 4
             let t57 = -0.1 * s1_2
             let t58 = 0.1 + 0.1 * c1_2
-            let t59 = 0.75 + (c6 * (0.75 + (t4 - r02 * t57 + r22 * t58 - t6) - 0.75) - s6 * (0.25 + (t0 - r01 * t57 + r21 * t58 - t2) - 0.25)) - 0.75
-            let t60 = 0.2 + (0.3 + (t9 - (t10 - r00 * t57 + r20 * t58)) - 0.2) - 0.2
+            let t59 = c6 * (t5 - r02 * t57 + r22 * t58 - t4) - s6 * (t1 - r01 * t57 + r21 * t58 - t0)
+            let t60 = 0.09999999999999998 + (t9 - (t10 - r00 * t57 + r20 * t58))
             let t61 = c2 * c1_2
             let t62 = c2 * s1_2
             let t63 = c6 * (t18 + r02 * t61 - r22 * t62) - s6 * (t19 + r01 * t61 - r21 * t62)

@@ -20,7 +20,7 @@ slack 0.0
   let t11 = r22 * 0.55
   quadratic(0.0, 1.0, 0.2 - (pz + (r20 * -0.1 + t0))) -> d3 {
     # joint 2: an equation of which it is the only unknown
-    let t13 = 0.1 - (0.2 + (0.2 - d3 - 0.2))
+    let t13 = -0.1 + d3
     let t14 = r00 * t13
     let t15 = px + t14
     let t16 = t13 * r10
@@ -50,39 +50,42 @@ slack 0.0
       # joint 4: two equations in its cosine and sine
       let t41 = -0.3 * s2
       let t42 = r01 * t41
-      let t43 = 0.3 + -0.3 * c2
-      let t44 = t43 - 0.55
-      let t45 = -0.55 + (0.55 + t44)
-      let t46 = px + (t14 - t42 + r02 * t45) - 0.55
-      let t47 = r11 * t41
-      let t48 = py + (t16 - t47 + r12 * t45)
-      let t49 = r21 * t41
-      let t50 = pz + (t18 - t49 + r22 * t45) - 0.2
-      let t51 = t46 * t46 + t48 * t48 + t50 * t50
-      let t52 = 0.55 - t43
-      let t53 = -0.55 + (0.55 + t52)
-      let t54 = px + (t14 + t42 + r02 * t53) - 0.55
-      let t55 = py + (t16 + t47 + r12 * t53)
-      let t56 = pz + (t18 + t49 + r22 * t53) - 0.2
-      let t57 = t54 * t54 + t55 * t55 + t56 * t56
-      let t58 = 0.5 * (t51 - t57)
-      let t59 = -0.55 + (0.55 - t41)
-      let t60 = px + (t14 + r01 * t52 + r02 * t59) - 0.55
-      let t61 = py + (t16 + r11 * t52 + r12 * t59)
-      let t62 = pz + (t18 + r21 * t52 + r22 * t59) - 0.2
-      let t63 = -0.55 + (0.55 + t41)
-      let t64 = px + (t14 + r01 * t44 + r02 * t63) - 0.55
-      let t65 = py + (t16 + r11 * t44 + r12 * t63)
-      let t66 = pz + (t18 + r21 * t44 + r22 * t63) - 0.2
-      let t67 = 0.5 * (t60 * t60 + t61 * t61 + t62 * t62 - (t64 * t64 + t65 * t65 + t66 * t66))
-      let t68 = (t26 * t58 - t35 * t67) / max(1e-30, t37 + (t58 * t58 + t67 * t67 + t36))
-      let t69 = t38 - (t43 * t43 + t41 * t41)
-      let t70 = 0.5 * (t51 + t57) - 0.30250000000000005
-      align(t68 * (t67 * t69 - t26 * t70), t68 * (t35 * t70 - t58 * t69)) -> c4 s4 {
+      let t43 = -0.3 * c2
+      let t44 = -0.25000000000000006 + t43
+      let t45 = px + (t14 - t42 + r02 * t44) - 0.55
+      let t46 = r11 * t41
+      let t47 = py + (t16 - t46 + r12 * t44)
+      let t48 = r21 * t41
+      let t49 = pz + (t18 - t48 + r22 * t44) - 0.2
+      let t50 = t45 * t45 + t47 * t47 + t49 * t49
+      let t51 = 0.25 - t43
+      let t52 = px + (t14 + t42 + r02 * t51) - 0.55
+      let t53 = py + (t16 + t46 + r12 * t51)
+      let t54 = pz + (t18 + t48 + r22 * t51) - 0.2
+      let t55 = t52 * t52 + t53 * t53 + t54 * t54
+      let t56 = 0.5 * (t50 - t55)
+      let t57 = r01 * t44
+      let t58 = r02 * t41
+      let t59 = px + (t14 - t57 - t58) - 0.55
+      let t60 = r11 * t44
+      let t61 = r12 * t41
+      let t62 = py + (t16 - t60 - t61)
+      let t63 = r21 * t44
+      let t64 = r22 * t41
+      let t65 = pz + (t18 - t63 - t64) - 0.2
+      let t66 = px + (t58 + (t14 + t57)) - 0.55
+      let t67 = py + (t61 + (t16 + t60))
+      let t68 = pz + (t64 + (t18 + t63)) - 0.2
+      let t69 = 0.5 * (t59 * t59 + t62 * t62 + t65 * t65 - (t66 * t66 + t67 * t67 + t68 * t68))
+      let t70 = (t26 * t56 - t35 * t69) / max(1e-30, t37 + (t56 * t56 + t69 * t69 + t36))
+      let t71 = t43 + 0.3
+      let t72 = t38 - (t71 * t71 + t41 * t41)
+      let t73 = 0.5 * (t50 + t55) - 0.30250000000000005
+      align(t70 * (t69 * t72 - t26 * t73), t70 * (t35 * t73 - t56 * t72)) -> c4 s4 {
         # joint 1: two equations in its cosine and sine
-        let t73 = s2 * c4 + c2 * s4
-        let t74 = c2 * c4 - s2 * s4
-        align(-0.5 * (r01 * t73 - r02 * t74), -0.5 * (r01 * t74 + r02 * t73)) -> c1 s1 {
+        let t76 = s2 * c4 + c2 * s4
+        let t77 = c2 * c4 - s2 * s4
+        align(-0.5 * (r01 * t76 - r02 * t77), -0.5 * (r01 * t77 + r02 * t76)) -> c1 s1 {
           emit angle(c1, s1) angle(c2, s2) length(d3) angle(c4, s4)
         }
       }

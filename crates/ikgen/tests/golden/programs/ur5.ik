@@ -27,10 +27,10 @@ slack 0.0
       first {
         align(t16, t17) -> c6 s6 {
           # the triangle of axes 2, 3 and 4
-          let t20 = -0.005491 - (-0.005491 + c6 * 0.09465)
-          let t21 = -0.81725 + (0.81725 - 0.09465 * s6)
-          let t22 = c1 * (px + (t2 + r00 * t20 + r02 * t21)) + s1 * (py + (t0 + r10 * t20 + r12 * t21))
-          let t23 = 0.089159 + (pz + (t5 + t20 * r20 + t21 * r22) - 0.089159) - 0.089159
+          let t20 = c6 * 0.09465
+          let t21 = 0.09465 * s6
+          let t22 = c1 * (px + (t2 - r00 * t20 - r02 * t21)) + s1 * (py + (t0 - r10 * t20 - r12 * t21))
+          let t23 = pz + (t5 - t20 * r20 - t21 * r22) - 0.089159
           let t24 = s6 * c5
           let t25 = c6 * c5
           let t26 = c1 * (t13 - r00 * t24 + r02 * t25) + s1 * (t14 - r10 * t24 + r12 * t25)
@@ -53,7 +53,7 @@ slack 0.0
           # axis 6 is parallel too: any value of joint 6 for which axes 2, 3 and 4 close the triangle
           let t39 = t3 * c1 + t1 * s1
           let t40 = c1 * (r00 * -0.09465) + s1 * (r10 * -0.09465)
-          let t41 = 0.089159 + (pz + t5 - 0.089159) - 0.089159
+          let t41 = pz + t5 - 0.089159
           let t42 = r20 * -0.09465
           let t43 = 2.0 * (t39 * t40 + t41 * t42)
           let t44 = 2.0 * (t39 * (c1 * (r02 * -0.09465) + s1 * (r12 * -0.09465)) + t41 * (r22 * -0.09465))
@@ -61,10 +61,10 @@ slack 0.0
           let t46 = sqrt(t43 * t43 + t44 * t44)
           circle(t43, t44, 0.5 * (max(0.0010725624999999965, t45 - t46) + min(0.6678975625000001, t45 + t46)) - t45) -> c6_2 s6_2 {
             # the triangle of axes 2, 3 and 4
-            let t49 = -0.005491 - (-0.005491 + 0.09465 * c6_2)
-            let t50 = -0.81725 + (0.81725 - 0.09465 * s6_2)
-            let t51 = c1 * (px + (t2 + r00 * t49 + r02 * t50)) + s1 * (py + (t0 + r10 * t49 + r12 * t50))
-            let t52 = 0.089159 + (pz + (t5 + r20 * t49 + r22 * t50) - 0.089159) - 0.089159
+            let t49 = 0.09465 * c6_2
+            let t50 = 0.09465 * s6_2
+            let t51 = c1 * (px + (t2 - r00 * t49 - r02 * t50)) + s1 * (py + (t0 - r10 * t49 - r12 * t50))
+            let t52 = pz + (t5 - r20 * t49 - r22 * t50) - 0.089159
             let t53 = c5 * s6_2
             let t54 = c5 * c6_2
             let t55 = c1 * (t13 - r00 * t53 + r02 * t54) + s1 * (t14 - r10 * t53 + r12 * t54)
