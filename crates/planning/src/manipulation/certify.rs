@@ -13,7 +13,7 @@ use crate::edge::{EdgeChecker, Obstruction};
 use crate::mechanism::Mechanism;
 use crate::scene::{Along, ArticleChecker, Grip, RobotChecker, Rules, Scene};
 use crate::space::{Axis, Space};
-use crate::timing::limit_use;
+use crate::timing::{TimeLaw, jerk_use, limit_use};
 
 /// What is wrong with a plan.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -70,6 +70,11 @@ pub fn certify(
         let limits = motion_limits(&robot.model, trajectory.dofs());
         if limit_use(trajectory.times(), trajectory.knots(), &limits) > LIMIT_USE {
             return Err(wrong(0.0, "a speed limit is exceeded".into()));
+        }
+        if options.timing.law != TimeLaw::AlongPath
+            && jerk_use(trajectory.times(), trajectory.knots(), &limits) > LIMIT_USE
+        {
+            return Err(wrong(0.0, "a limit of the jerk is exceeded".into()));
         }
         let object = plan.object_of(segment.goal);
         let rules = rules(problem, options, segment, object, &links);

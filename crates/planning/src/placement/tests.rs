@@ -231,3 +231,86 @@ fn an_arm_folds_itself_above_its_footprint() {
         "a good preset comes first"
     );
 }
+
+/// A point on the plane is the base, another one the hand: it reaches as far as 2 from it.
+struct Points {
+    toy: crate::toy::Toy,
+}
+
+impl PlacementProblem for Points {
+    fn grasp_is_free(&mut self, _: usize, _: usize) -> Result<(), Obstruction> {
+        Ok(())
+    }
+    fn base_is_free(&mut self, _: usize, base: &[f64; 3]) -> Result<(), Obstruction> {
+        self.toy.state(&base[..2]).map(|_| ())
+    }
+    fn solutions(&mut self, _: usize, base: &[f64; 3], world_from_tool: &Pose) -> Vec<Vec<f64>> {
+        let at = world_from_tool.translation.vector;
+        let near = (at.x - base[0]).hypot(at.y - base[1]) <= 2.0;
+        if near { vec![vec![base[0], base[1], at.x, at.y]] } else { vec![] }
+    }
+    fn is_free(&mut self, q: &[f64]) -> Result<(), Obstruction> {
+        self.toy.edge(&q[..2], &q[2..]).map_err(|blocked| blocked.by)
+    }
+}
+
+#[test]
+fn points_on_a_plane_are_placed_where_they_see_their_target() {
+    // Behind a wall from x = 4 to 5: whoever stands on its left does not see the target.
+    let mut points = Points { toy: crate::toy::Toy::wall(0.02) };
+    let arms = [PlacementArm { cost: 1.0, grasps: vec![Pose::translation(5.5, 4.0, 0.0)] }];
+    let mut anywhere = UniformBases { radius: 2.5 };
+    let options = PlacementOptions { max_places: 500, ..PlacementOptions::default() };
+    let mut sampler = BasePlacement::new(&mut points, &mut anywhere, &arms, options, Seed::new(1));
+    while sampler.draw(&Budget::unlimited()).unwrap() != GoalDraw::Exhausted {}
+    let PlacementRejections { bases, out_of_reach, configurations, places, .. } = sampler.rejections.clone();
+    let placements = sampler.placements.clone();
+    assert!(bases > 0 && out_of_reach > 0 && configurations > 0);
+    assert_eq!(placements.len() as u32 + bases + out_of_reach + configurations, places);
+    assert!(placements.iter().all(|p| p.base[0] > 5.0 && (p.base[0] - 5.5).hypot(p.base[1] - 4.0) <= 2.0));
+}
+
+#[test]
+fn points_on_a_plane_fold_into_a_prism_and_onto_a_constraint() {
+    /// On the diagonal.
+    struct Diagonal;
+    impl crate::constraint::Constraint for Diagonal {
+        fn holds(&self, q: &[f64]) -> bool {
+            (q[0] - q[1]).abs() < 1e-9
+        }
+        fn size(&self, difference: &[f64]) -> f64 {
+            difference[0].hypot(difference[1])
+        }
+        fn project(&self, q: &mut [f64]) -> bool {
+            let mean = 0.5 * (q[0] + q[1]);
+            q.fill(mean);
+            true
+        }
+    }
+    // Within 0 to 3, of which a box covers the middle.
+    let mut toy = crate::toy::Toy::new(vec![([1.0, 1.0], [2.0, 2.0])], 0.05);
+    let prism =
+        Prism { footprint: vec![[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0]], heights: (-1.0, 1.0) };
+    let excess = |q: &[f64]| prism.excess(&Point3::new(q[0], q[1], 0.0));
+    for constraint in [None, Some(&Diagonal as &dyn crate::constraint::Constraint)] {
+        let options = PostureOptions { largest: 6.0, ..PostureOptions::default() };
+        let mut goals = NavigationPosture::new(&mut toy, &excess, &[5.0, 4.0], options, Seed::new(1))
+            .with_constraint(constraint);
+        let mut found = Vec::new();
+        loop {
+            match goals.draw(&Budget::unlimited()).unwrap() {
+                GoalDraw::Goal(q) => found.push(q),
+                GoalDraw::Pending => {}
+                GoalDraw::Exhausted => break,
+            }
+        }
+        let (outside, blocked) = (goals.outside, goals.blocked);
+        assert!(found.len() > 20 && blocked > 0, "{} {outside} {blocked}", found.len());
+        for q in &found {
+            assert!(
+                excess(q) <= 0.0 && toy.state(q).is_ok() && constraint.is_none_or(|c| c.holds(q)),
+                "{q:?}"
+            );
+        }
+    }
+}

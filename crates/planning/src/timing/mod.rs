@@ -2,16 +2,17 @@
 //!
 //! [`blend`] makes the path smooth enough to be followed without stopping, [`profile`] finds the fastest speed along
 //! it. The result keeps the limits between its knots too, which [`TimedPath::limit_use`] measures independently.
-//! [`point_to_point()`] motions stop at corners instead, and limit the jerk as well.
+//! [`point_to_point()`] motions stop at corners instead, and limit the jerk as well; [`limited_jerk`] limits it along rounded corners.
 
 mod blend;
+mod limited_jerk;
 mod point_to_point;
 mod profile;
 mod timed;
 
 pub use point_to_point::point_to_point;
 pub use timed::TimedPath;
-pub(crate) use timed::limit_use;
+pub(crate) use timed::{jerk_use, limit_use};
 
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +26,7 @@ pub struct MotionLimits {
     pub velocity: Vec<f64>,
     /// Largest acceleration of each coordinate, per second squared; positive.
     pub acceleration: Vec<f64>,
-    /// Largest jerk of each coordinate, per second cubed; positive. Kept by [`TimeLaw::PointToPoint`] alone.
+    /// Largest jerk of each coordinate, per second cubed; positive. Not kept by [`TimeLaw::AlongPath`].
     pub jerk: Vec<f64>,
 }
 
@@ -37,6 +38,9 @@ pub enum TimeLaw {
     /// Acceleration may jump.
     #[default]
     AlongPath,
+    /// The same with limited jerk: a little slower, and a little inside of the rounded corners; from state to state where that is
+    /// faster.
+    AlongPathLimitedJerk,
     /// From state to state, at rest at each: on the edges themselves, with limited jerk.
     PointToPoint,
 }
@@ -74,20 +78,41 @@ pub fn time_path<C: EdgeChecker + ?Sized>(
     checker.space().unwrap_path(&mut path);
     drop_repeated(checker.space(), &mut path);
     let Some(first) = path.first() else { return TimedPath::default() };
-    let mut timed = TimedPath::resting_at(first);
     match options.law {
-        TimeLaw::PointToPoint => {
-            for edge in path.windows(2) {
-                timed.append(point_to_point(&edge[0], &edge[1], limits));
+        TimeLaw::PointToPoint => stopping(&path, first, limits),
+        TimeLaw::AlongPathLimitedJerk => {
+            let mut timed = TimedPath::resting_at(first);
+            for section in blend::round_corners(checker, &path, options.blend) {
+                let grid = blend::subdivide(&section, options.intervals);
+                let (first, last) = (&grid[0], &grid[grid.len() - 1]);
+                let straight = grid.iter().all(|interval| interval.curvature.iter().all(|c| *c == 0.0));
+                timed.append(if straight {
+                    point_to_point(&first.start, &last.end(), limits)
+                } else {
+                    limited_jerk::limit_jerk(checker, &grid, limits)
+                });
             }
+            // Where the jerk counts for more than the acceleration, corners are better stopped at.
+            let stopping = stopping(&path, first, limits);
+            if stopping.duration() < timed.duration() { stopping } else { timed }
         }
         TimeLaw::AlongPath => {
+            let mut timed = TimedPath::resting_at(first);
             for section in blend::round_corners(checker, &path, options.blend) {
                 let grid = blend::subdivide(&section, options.intervals);
                 timed.append(profile::fastest(&grid, limits));
             }
             timed.slow_down_to(limits);
+            timed
         }
+    }
+}
+
+/// The motion that rests at every state of the path.
+fn stopping(path: &[Vec<f64>], first: &[f64], limits: &MotionLimits) -> TimedPath {
+    let mut timed = TimedPath::resting_at(first);
+    for edge in path.windows(2) {
+        timed.append(point_to_point(&edge[0], &edge[1], limits));
     }
     timed
 }

@@ -60,12 +60,22 @@ impl TimedPath {
         limit_use(&self.times, &self.knots, limits)
     }
 
+    /// The largest fraction of any limit of the jerk that the motion uses anywhere; infinite where an acceleration jumps, at the ends
+    /// from or to rest included.
+    pub fn jerk_use(&self, limits: &MotionLimits) -> f64 {
+        jerk_use(&self.times, &self.knots, limits)
+    }
+
     /// Stretches time where rounding or interpolation left the motion a trace too fast.
     pub(super) fn slow_down_to(&mut self, limits: &MotionLimits) {
         let factor = self.limit_use(limits);
-        if factor <= 1.0 {
-            return;
+        if factor > 1.0 {
+            self.stretch(factor);
         }
+    }
+
+    /// The same motion, slower by this factor.
+    pub(super) fn stretch(&mut self, factor: f64) {
         for time in &mut self.times {
             *time *= factor;
         }
@@ -107,6 +117,31 @@ pub(crate) fn limit_use(times: &[f64], knots: &[TrajectoryPoint], limits: &Motio
             let velocity = v0.abs().max(knots[1].velocities[i].abs()).max(between.abs());
             most = most.max(velocity / limits.velocity[i]);
             most = most.max((acceleration / limits.acceleration[i]).sqrt());
+        }
+    }
+    most
+}
+
+/// Accelerations that differ by less than this fraction of their limit from one piece to the next are continuous, but for rounding.
+const CONTINUOUS: f64 = 1e-5;
+
+/// See [`TimedPath::jerk_use`].
+pub(crate) fn jerk_use(times: &[f64], knots: &[TrajectoryPoint], limits: &MotionLimits) -> f64 {
+    let mut most = 0.0_f64;
+    for i in 0..limits.jerk.len() {
+        let mut before = 0.0;
+        let jump = |from: f64, to: f64| (to - from).abs() > CONTINUOUS * limits.acceleration[i];
+        for (times, knots) in times.windows(2).zip(knots.windows(2)) {
+            let h = times[1] - times[0];
+            let [_, _, c2, c3] = cubic(&knots[0], &knots[1], i, h);
+            if jump(before, 2.0 * c2) {
+                return f64::INFINITY;
+            }
+            before = 2.0 * c2 + 6.0 * c3 * h;
+            most = most.max(6.0 * c3.abs() / limits.jerk[i]);
+        }
+        if jump(before, 0.0) {
+            return f64::INFINITY;
         }
     }
     most

@@ -219,6 +219,21 @@ fn grasps_with_room_and_within_reach_are_tried_first() {
 }
 
 #[test]
+fn the_jerk_is_limited_where_that_is_asked_for() {
+    // The certificate looks at the jerk of every segment.
+    let bench = bench(false, &[([0.6, -0.2], place(0, [0.6, 0.22], true, None))], &[WALL]);
+    let duration = |law| {
+        let timing = crate::timing::TimingOptions { law, ..Default::default() };
+        let options = ManipulationOptions { timing, ..options(&bench) };
+        run_with(&bench, &options, 1, &Budget::unlimited()).unwrap_or_else(|e| panic!("{e}")).duration()
+    };
+    use crate::timing::TimeLaw;
+    let [along, limited, stopping] =
+        [TimeLaw::AlongPath, TimeLaw::AlongPathLimitedJerk, TimeLaw::PointToPoint].map(duration);
+    assert!(along < limited && limited < stopping, "{along} {limited} {stopping}");
+}
+
+#[test]
 fn plans_repeat_by_seed() {
     let bench = bench(true, &[([0.6, -0.2], place(0, [0.6, 0.22], true, None))], &[WALL]);
     let plan = |seed| run(&bench, seed, &Budget::unlimited()).unwrap();
