@@ -157,6 +157,7 @@ impl Spline {
 
 #[cfg(test)]
 mod tests {
+    use super::super::blend::{round_corners, subdivide};
     use super::super::{TimeLaw, TimingOptions, time_path};
     use super::*;
     use crate::toy::Toy;
@@ -224,22 +225,26 @@ mod tests {
 
     #[test]
     fn near_an_obstacle_it_is_slower_and_free() {
-        // A large distance of knots, and a box close to the inside of the corner.
-        let limits = MotionLimits { velocity: vec![2.0; 2], acceleration: vec![2.0; 2], jerk: vec![2.0; 2] };
+        let limits = MotionLimits { velocity: vec![2.0; 2], acceleration: vec![4.0; 2], jerk: vec![20.0; 2] };
         let path = vec![vec![1.0, 2.0], vec![5.0, 2.0], vec![5.0, 8.0]];
-        let mut durations = Vec::new();
-        for gap in [3.0, 0.3] {
-            let obstacle = ([1.0, 2.0 + gap], [5.0 - gap, 9.0]);
-            let mut toy = Toy::new(vec![obstacle], 0.02);
-            toy.padding = 0.01;
-            let limited = timed(&mut toy, &path, &limits, TimeLaw::AlongPathLimitedJerk);
-            let mut exact = Toy::new(vec![obstacle], 0.02);
-            for (time, point) in limited.resample(0.001) {
-                assert!(exact.state(&point.positions).is_ok(), "{gap} at {time}");
-            }
-            assert!(limited.jerk_use(&limits) <= 1.0 + 1e-6);
-            durations.push(limited.duration());
-        }
-        assert!(durations[1] > durations[0], "{durations:?}");
+        let mut open = Toy::new(vec![], 0.002);
+        let section = round_corners(&mut open, &path, 0.05).remove(0);
+        let grid = subdivide(&section, 160);
+        let free = limit_jerk(&mut open, &grid, &limits);
+        // How far towards the corner the curve and the motion get.
+        let of_curve = grid.iter().map(|i| i.start[0] - i.start[1]).fold(0.0, f64::max);
+        let samples = free.resample(0.001);
+        let of_motion = samples.iter().map(|(_, p)| p.positions[0] - p.positions[1]).fold(0.0, f64::max);
+        assert!(of_motion < of_curve - 1e-3, "{of_motion} inside of {of_curve}");
+        // A box between the two.
+        let inside = 0.5 * (3.0 - 0.5 * (of_curve + of_motion));
+        let obstacle = ([1.0, 2.0 + inside], [5.0 - inside, 9.0]);
+        let motion = limit_jerk(&mut Toy::new(vec![obstacle], 0.002), &grid, &limits);
+        let mut exact = Toy::new(vec![obstacle], 0.002);
+        let hits = |motion: &TimedPath, exact: &mut Toy| {
+            motion.resample(0.001).iter().filter(|(_, p)| exact.state(&p.positions).is_err()).count()
+        };
+        assert!(hits(&free, &mut exact) > 0 && hits(&motion, &mut exact) == 0);
+        assert!(motion.duration() > free.duration() && motion.jerk_use(&limits) <= 1.0 + 1e-6);
     }
 }
