@@ -1,6 +1,9 @@
 //! A search tree in flat memory that is kept from one search to the next.
 
+use std::array::from_fn;
 use std::f32::consts::TAU;
+
+use pulp::NullaryFnOnce;
 
 use crate::space::Space;
 
@@ -14,15 +17,17 @@ pub(super) struct Tree {
     proven: Vec<bool>,
     /// For each node, how far away samples may be for it to be extended.
     domains: Vec<f64>,
-    /// The states once more, weighted, in single precision: a column for each coordinate, filled up with infinity.
-    columns: Vec<Vec<f32>>,
-    /// For each coordinate, half a turn in its column; infinite when it does not wrap.
+    /// The states once more, weighted, in single precision: for each block of nodes a row for each coordinate, filled up with infinity.
+    rows: Vec<[f32; BLOCK]>,
+    /// For each coordinate, a turn in its row; infinite when it does not wrap.
     turns: Vec<f32>,
+    /// The state that the nearest node is looked for, as in the rows.
+    query: Vec<f32>,
     arch: pulp::Arch,
 }
 
 /// Distances that are computed together.
-const BLOCK: usize = 64;
+const BLOCK: usize = 16;
 
 impl Tree {
     pub(super) fn new(space: &Space) -> Self {
@@ -34,8 +39,9 @@ impl Tree {
             parents: Vec::new(),
             proven: Vec::new(),
             domains: Vec::new(),
-            columns: vec![Vec::new(); space.dimension()],
+            rows: Vec::new(),
             turns: space.axes().iter().map(turn).collect(),
+            query: Vec::new(),
             arch: pulp::Arch::new(),
         }
     }
@@ -46,7 +52,7 @@ impl Tree {
         self.parents.clear();
         self.proven.clear();
         self.domains.clear();
-        self.columns.iter_mut().for_each(Vec::clear);
+        self.rows.clear();
         self.push(space, 0, root, true);
     }
 
@@ -64,53 +70,28 @@ impl Tree {
         self.parents.push(parent as u32);
         self.proven.push(proven);
         self.domains.push(f64::INFINITY);
-        for ((column, axis), &x) in self.columns.iter_mut().zip(space.axes()).zip(q) {
-            if node.is_multiple_of(BLOCK) {
-                column.resize(node + BLOCK, f32::INFINITY);
-            }
-            column[node] = place(axis, x);
+        if node.is_multiple_of(BLOCK) {
+            self.rows.resize(self.rows.len() + self.dimension, [f32::INFINITY; BLOCK]);
+        }
+        let first = self.first_row(node);
+        for ((row, axis), &x) in self.rows[first..].iter_mut().zip(space.axes()).zip(q) {
+            row[node % BLOCK] = place(axis, x);
         }
         node
     }
 
+    /// The first row of the block of a node.
+    fn first_row(&self, node: usize) -> usize {
+        node / BLOCK * self.dimension
+    }
+
     /// The node nearest to `q` and its distance. Nodes that are equally near but for rounding count as equal; the first of
     /// them is taken.
-    pub(super) fn nearest(&self, space: &Space, q: &[f64]) -> (usize, f64) {
-        let node = self.arch.dispatch(|| {
-            let mut best = (0, f32::INFINITY);
-            for first in (0..self.len()).step_by(BLOCK) {
-                let mut squares = [0.0_f32; BLOCK];
-                for (i, column) in self.columns.iter().enumerate() {
-                    let (x, turn) = (place(&space.axes()[i], q[i]), self.turns[i]);
-                    let block: &[f32; BLOCK] =
-                        column[first..].first_chunk().expect("columns are whole blocks");
-                    if turn.is_finite() {
-                        for (square, y) in squares.iter_mut().zip(block) {
-                            let d = (x - y).abs();
-                            let d = d.min((turn - d).abs());
-                            *square += d * d;
-                        }
-                    } else {
-                        for (square, y) in squares.iter_mut().zip(block) {
-                            let d = x - y;
-                            *square += d * d;
-                        }
-                    }
-                }
-                let mut least = [f32::INFINITY; 16];
-                for sixteen in squares.chunks_exact(16) {
-                    for (least, square) in least.iter_mut().zip(sixteen) {
-                        *least = if square < least { *square } else { *least };
-                    }
-                }
-                let least = least.into_iter().fold(f32::INFINITY, f32::min);
-                if least < best.1 {
-                    let at = squares.iter().position(|s| *s == least).expect("the least is one of them");
-                    best = (first + at, least);
-                }
-            }
-            best.0
-        });
+    pub(super) fn nearest(&mut self, space: &Space, q: &[f64]) -> (usize, f64) {
+        self.query.clear();
+        self.query.extend(space.axes().iter().zip(q).map(|(axis, &x)| place(axis, x)));
+        let Self { rows, turns, query, dimension, .. } = &*self;
+        let node = self.arch.dispatch(Nearest { rows, turns, query, dimension: *dimension });
         (node, space.distance(self.state(node), q))
     }
 
@@ -157,13 +138,15 @@ impl Tree {
             self.domains[kept] = self.domains[old];
             let from = old * self.dimension;
             self.states.copy_within(from..from + self.dimension, kept * self.dimension);
-            self.columns.iter_mut().for_each(|column| column[kept] = column[old]);
+            let (source, target) = (self.first_row(old), self.first_row(kept));
+            for i in 0..self.dimension {
+                self.rows[target + i][kept % BLOCK] = self.rows[source + i][old % BLOCK];
+            }
             kept += 1;
         }
-        for column in &mut self.columns {
-            column[kept..].fill(f32::INFINITY);
-            column.truncate(kept.next_multiple_of(BLOCK));
-        }
+        self.rows.truncate(kept.div_ceil(BLOCK) * self.dimension);
+        let last = self.first_row(kept);
+        self.rows.iter_mut().skip(last).for_each(|row| row[kept % BLOCK..].fill(f32::INFINITY));
         self.parents.truncate(kept);
         self.proven.truncate(kept);
         self.domains.truncate(kept);
@@ -181,7 +164,66 @@ impl Tree {
     }
 }
 
-/// A coordinate as it stands in a column; angles that wrap are in one turn.
+/// The nearest node, by rows of coordinates.
+struct Nearest<'a> {
+    rows: &'a [[f32; BLOCK]],
+    turns: &'a [f32],
+    query: &'a [f32],
+    dimension: usize,
+}
+
+impl NullaryFnOnce for Nearest<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn call(self) -> usize {
+        // For each place in a block, the least square so far and the block that it is in.
+        let (mut least, mut blocks) = ([f32::INFINITY; BLOCK], [0_u32; BLOCK]);
+        for (block, rows) in self.rows.chunks_exact(self.dimension).enumerate() {
+            let mut squares = [0.0_f32; BLOCK];
+            for ((row, &x), &turn) in rows.iter().zip(self.query).zip(self.turns) {
+                if turn.is_finite() {
+                    for k in 0..BLOCK {
+                        let d = (x - row[k]).abs();
+                        let round = (turn - d).abs();
+                        let d = if round < d { round } else { d };
+                        squares[k] += d * d;
+                    }
+                } else {
+                    for k in 0..BLOCK {
+                        let d = x - row[k];
+                        squares[k] += d * d;
+                    }
+                }
+            }
+            for k in 0..BLOCK {
+                let nearer = squares[k] < least[k];
+                least[k] = if nearer { squares[k] } else { least[k] };
+                blocks[k] = if nearer { block as u32 } else { blocks[k] };
+            }
+        }
+        let mut nearest = least;
+        halve(&mut nearest, |a, b| if b < a { b } else { a });
+        let mut nodes: [u32; BLOCK] =
+            from_fn(|k| if least[k] == nearest[0] { blocks[k] * BLOCK as u32 + k as u32 } else { u32::MAX });
+        halve(&mut nodes, |a, b| a.min(b));
+        nodes[0] as usize
+    }
+}
+
+/// Leaves in the first place what `least` makes of all.
+#[inline(always)]
+fn halve<T: Copy>(values: &mut [T; BLOCK], least: impl Fn(T, T) -> T) {
+    let mut half = BLOCK / 2;
+    while half > 0 {
+        for k in 0..half {
+            values[k] = least(values[k], values[k + half]);
+        }
+        half /= 2;
+    }
+}
+
+/// A coordinate as it stands in a row; angles that wrap are in one turn.
 fn place(axis: &crate::space::Axis, x: f64) -> f32 {
     use std::f64::consts::TAU;
     let x = if axis.wraps { x - TAU * (x / TAU).floor() } else { x };
