@@ -6,10 +6,11 @@ use robotc_core::ids::Idx;
 use robotc_core::{BodyIdx, Pose};
 
 use super::Width;
-use super::glance::{Glance, Meeting, View, glance};
+use super::glance::{Hit, Look, Meeting, View};
 use super::kernel::{Around, Close, Line, MOST_LANES, Motion, Scratch, look};
 use super::mechanism::{Body, Group, LaneRobot, number_of};
 use super::obstacle::Obstacle;
+use super::suspects::{Inquiry, Suspect, Suspects};
 use crate::edge::{Blocked, EdgeChecker, Obstruction, Patience};
 use crate::scene::{PlacedPile, Rules, Scene};
 use crate::space::Space;
@@ -33,6 +34,7 @@ pub struct LaneChecker<'a> {
     pub(super) near: Vec<Vec<(u32, f32)>>,
     /// The same one by one: what was hit last comes first, since what is hit once is often hit again.
     meetings: Vec<Meeting>,
+    suspects: Suspects,
     patience: Patience,
     pub(super) work: &'a mut LaneMemory,
     pub(super) statistics: LaneStatistics,
@@ -45,8 +47,6 @@ pub struct LaneStatistics {
     pub edges: u64,
     /// Single configurations looked at in lanes.
     pub looks: u64,
-    /// Motions in which nothing was hit at a first look, but spheres around the robot touched something.
-    pub open: u64,
     /// Stretches looked at in lanes.
     pub stretches: u64,
     /// Distances of convex parts asked for.
@@ -137,11 +137,11 @@ impl<'a> LaneChecker<'a> {
         }
         let near = near(robot, &obstacles, &owners, rules);
         let statistics = LaneStatistics::default();
-        // What is farther out moves more and touches more often.
+        // What is farther out moves more and touches more often. What spheres inside of the robot may be in, they do not tell.
         let each = near.iter().enumerate().rev().flat_map(|(group, near)| {
             near.iter().map(move |&(obstacle, room)| Meeting { group: group as u32, obstacle, room })
         });
-        let meetings = each.collect();
+        let meetings = each.filter(|meeting| meeting.room >= 0.0).collect();
         Self {
             robot,
             scene,
@@ -151,6 +151,7 @@ impl<'a> LaneChecker<'a> {
             owners,
             near,
             meetings,
+            suspects: Suspects::new(),
             patience: Patience::Thorough,
             work,
             statistics,
@@ -195,21 +196,23 @@ impl<'a> LaneChecker<'a> {
         let LaneMemory { motion, scratch, difference, .. } = &mut *self.work;
         let (robot, obstacles, meetings) = (self.robot, &self.obstacles, &self.meetings);
         let view = View { robot, obstacles, meetings, motion, from, difference };
-        match self.width.dispatch(Looks { view, scratch, count }) {
-            Glance::Hit(close) => {
-                if let Close::Obstacle { body, obstacle } = close {
+        let inquiry = Inquiry { view, suspects: &self.suspects, count, frames: &mut scratch.frames };
+        let hit = self.width.narrow().dispatch(inquiry).map(Hit::Obstacle);
+        let close = match hit.or_else(|| self.width.dispatch(Look { view, count, scratch })) {
+            None => return Ok(()),
+            Some(Hit::Pair(pair)) => Close::Pair(pair),
+            Some(Hit::Obstacle(suspect)) => {
+                let Suspect { body, obstacle, .. } = suspect;
+                if self.suspects.blame(suspect) {
                     let group = self.robot.bodies[body as usize].group as u32;
                     let hit = |m: &Meeting| m.group == group && m.obstacle == obstacle;
                     let at = self.meetings.iter().position(hit).expect("it was looked at");
                     self.meetings[..=at].rotate_right(1);
                 }
-                Err(Blocked { fraction: 1.0, by: self.obstruction(close) })
+                Close::Obstacle { body, obstacle }
             }
-            Glance::Passed { open } => {
-                self.statistics.open += u64::from(open);
-                Ok(())
-            }
-        }
+        };
+        Err(Blocked { fraction: 1.0, by: self.obstruction(close) })
     }
 
     pub(super) fn obstruction(&self, close: Close) -> Obstruction {
@@ -378,22 +381,6 @@ impl WithSimd for Pass<'_> {
             }
         }
         None
-    }
-}
-
-/// A first look at one motion.
-struct Looks<'a> {
-    view: View<'a>,
-    scratch: &'a mut Scratch,
-    count: usize,
-}
-
-impl WithSimd for Looks<'_> {
-    type Output = Glance;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Glance {
-        glance(simd, &self.view, self.count, self.scratch)
     }
 }
 

@@ -25,6 +25,11 @@ pub(super) struct Frames<'a, S: Simd> {
     centres: &'a mut [S::f32s],
     stamps: &'a mut [u32],
     call: u32,
+    /// Of each joint, its value at the start and its change over the whole motion.
+    steps: &'a [(f32, f32)],
+    along: Lanes<S>,
+    /// Frames that are placed.
+    placed: usize,
 }
 
 /// Values for each frame.
@@ -37,14 +42,17 @@ impl<'a, S: Simd> Frames<'a, S> {
     pub(super) fn place(
         simd: S,
         robot: &'a LaneRobot,
-        steps: &[(f32, f32)],
+        steps: &'a [(f32, f32)],
         along: Lanes<S>,
         memory: &'a mut FrameMemory,
     ) -> Self {
         let lanes = S::F32_LANES;
-        memory.poses.resize((robot.steps.len() + 1) * FRAME * lanes, 0.0);
-        memory.centres.resize(robot.spheres.len() * 3 * lanes, 0.0);
-        memory.stamps.resize(robot.spheres.len(), 0);
+        let (poses, centres) = ((robot.steps.len() + 1) * FRAME * lanes, robot.spheres.len() * 3 * lanes);
+        // Others may need more of it.
+        let at_least = |len: usize, values: &mut Vec<f32>| values.resize(values.len().max(len), 0.0);
+        at_least(poses, &mut memory.poses);
+        at_least(centres, &mut memory.centres);
+        memory.stamps.resize(memory.stamps.len().max(robot.spheres.len()), 0);
         memory.call = memory.call.wrapping_add(1);
         if memory.call == 0 {
             memory.stamps.fill(0);
@@ -53,25 +61,32 @@ impl<'a, S: Simd> Frames<'a, S> {
         let mut frames = Self {
             simd,
             robot,
-            poses: S::as_mut_simd_f32s(&mut memory.poses).0,
-            centres: S::as_mut_simd_f32s(&mut memory.centres).0,
+            poses: S::as_mut_simd_f32s(&mut memory.poses[..poses]).0,
+            centres: S::as_mut_simd_f32s(&mut memory.centres[..centres]).0,
             stamps: &mut memory.stamps,
             call: memory.call,
+            steps,
+            along,
+            placed: 1,
         };
-        frames.fill(steps, along);
-        frames
-    }
-
-    #[inline(always)]
-    fn fill(&mut self, steps: &[(f32, f32)], along: Lanes<S>) {
-        let (zero, one) = (Lanes::splat(self.simd, 0.0), Lanes::splat(self.simd, 1.0));
+        let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
         for (at, value) in
             [(0, [one, zero, zero]), (3, [zero, one, zero]), (6, [zero, zero, one]), (9, [zero; 3])]
         {
-            self.set(0, at, &value);
+            frames.set(0, at, &value);
         }
-        let robot = self.robot;
-        for (i, (step, &(start, change))) in robot.steps.iter().zip(steps).enumerate() {
+        frames
+    }
+
+    /// Places all frames up to one.
+    #[inline(always)]
+    pub(super) fn reach(&mut self, frame: usize) {
+        let Self { robot, steps, along, .. } = *self;
+        let zero = Lanes::splat(self.simd, 0.0);
+        while self.placed <= frame {
+            let i = self.placed - 1;
+            self.placed += 1;
+            let (step, (start, change)) = (&robot.steps[i], steps[i]);
             let value = Lanes::splat(self.simd, start) + along * change;
             let [x, y, z] = self.columns(step.parent);
             // A column of the joint's rotation, and its shift, are mixtures of the parent's columns.

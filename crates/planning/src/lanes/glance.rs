@@ -1,24 +1,23 @@
-//! A first look at a motion: configurations along it, and only those, by spheres alone.
+//! A first look at a motion: configurations along it, and only those, by spheres inside of the robot alone.
 //!
 //! What is hit is certainly blocked. What is not may still be: between the looks, or where spheres around the robot touch
 //! something and spheres inside of it do not. Most motions that are blocked are so at a first look, at a tenth of the cost
 //! of a proof.
 
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
 use super::frames::Frames;
-use super::kernel::{COARSE, Close, MOST_LANES, Motion, Scratch, children};
-use super::lane::{Lanes, Mask, dot, minus};
+use super::kernel::{MOST_LANES, Motion, Scratch, children};
+use super::lane::{Lanes, dot, minus};
 use super::mechanism::LaneRobot;
 use super::obstacle::Obstacle;
-use super::pile::Question;
+use super::suspects::Suspect;
 
-/// What a first look finds.
-pub(super) enum Glance {
-    /// Something touches.
-    Hit(Close),
-    /// Nothing is touched as far as spheres tell; whether they leave something open.
-    Passed { open: bool },
+/// What a first look hits.
+pub(super) enum Hit {
+    Obstacle(Suspect),
+    /// Two links touch: a pair of the robot.
+    Pair(u32),
 }
 
 /// What is known of a pair of bodies during one look.
@@ -32,6 +31,7 @@ pub(super) enum Standing {
 }
 
 /// A motion and what is around it.
+#[derive(Clone, Copy)]
 pub(super) struct View<'a> {
     pub(super) robot: &'a LaneRobot,
     pub(super) obstacles: &'a [Obstacle],
@@ -53,39 +53,53 @@ pub(super) struct Meeting {
     pub(super) room: f32,
 }
 
-/// Looks at the configurations at the ends of `count` equal pieces of a motion, a multiple of [`MOST_LANES`] or less than it.
-#[inline(always)]
-pub(super) fn glance<S: Simd>(simd: S, view: &View<'_>, count: usize, scratch: &mut Scratch) -> Glance {
-    let lanes = S::F32_LANES;
-    let blocks = count.div_ceil(lanes);
-    let mut open = false;
-    scratch.standings.clear();
-    scratch.standings.resize(view.robot.pairs.len(), Standing::Unknown);
-    let share = 1.0 / count as f32;
-    for block in (0..blocks).rev() {
-        let mut along = [1.0; MOST_LANES];
-        for lane in 0..lanes.min(count) {
-            // Each time all over the motion.
-            along[lane] = (lane * blocks + block + 1) as f32 * share;
+/// A first look at a motion: at the ends of `count` equal pieces of it, a multiple of [`MOST_LANES`].
+pub(super) struct Look<'a> {
+    pub(super) view: View<'a>,
+    pub(super) count: usize,
+    pub(super) scratch: &'a mut Scratch,
+}
+
+impl WithSimd for Look<'_> {
+    type Output = Option<Hit>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Option<Hit> {
+        let Self { view, count, scratch } = self;
+        let robot = view.robot;
+        scratch.standings.clear();
+        scratch.standings.resize(robot.pairs.len(), Standing::Unknown);
+        for block in (0..count / S::F32_LANES).rev() {
+            let along = along(simd, count, block);
+            let mut frames = Frames::place(simd, robot, &view.motion.steps, along, &mut scratch.frames);
+            frames.reach(robot.steps.len());
+            let mut eye = Eye {
+                simd,
+                view: &view,
+                frames,
+                stack: &mut scratch.stack,
+                standings: &mut scratch.standings,
+                rounding: robot.rounding as f32,
+            };
+            let hit = eye.against_obstacles().map(Hit::Obstacle);
+            if let Some(hit) = hit.or_else(|| eye.against_itself().map(Hit::Pair)) {
+                return Some(hit);
+            }
         }
-        let along = Lanes::new(simd, simd.partial_load_f32s(&along[..lanes]));
-        let frames = Frames::place(simd, view.robot, &view.motion.steps, along, &mut scratch.frames);
-        let mut eye = Eye {
-            simd,
-            view,
-            frames,
-            stack: &mut scratch.stack,
-            standings: &mut scratch.standings,
-            open: Mask::none(simd),
-            rounding: view.robot.rounding as f32,
-        };
-        let hit = eye.against_obstacles().or_else(|| eye.against_itself());
-        if let Some(close) = hit {
-            return Glance::Hit(close);
-        }
-        open |= eye.open.any();
+        None
     }
-    Glance::Passed { open }
+}
+
+/// Where along a motion the states of a block are, as fractions of it: each block is all over the motion.
+#[inline(always)]
+pub(super) fn along<S: Simd>(simd: S, count: usize, block: usize) -> Lanes<S> {
+    let lanes = S::F32_LANES;
+    let (blocks, share) = (count / lanes, 1.0 / count as f32);
+    let mut along = [0.0; MOST_LANES];
+    for (lane, along) in along.iter_mut().enumerate() {
+        *along = (lane * blocks + block + 1) as f32 * share;
+    }
+    Lanes::new(simd, simd.partial_load_f32s(&along[..lanes]))
 }
 
 /// One configuration in each lane.
@@ -95,8 +109,6 @@ struct Eye<'a, S: Simd> {
     frames: Frames<'a, S>,
     stack: &'a mut Vec<(u32, u32)>,
     standings: &'a mut [Standing],
-    /// Lanes in which spheres do not tell.
-    open: Mask<S>,
     rounding: f32,
 }
 
@@ -107,56 +119,48 @@ impl<S: Simd> Eye<'_, S> {
     }
 
     #[inline(always)]
-    fn against_obstacles(&mut self) -> Option<Close> {
+    fn against_obstacles(&mut self) -> Option<Suspect> {
         let View { robot, obstacles, meetings, .. } = *self.view;
-        {
-            for &Meeting { group, obstacle, room } in meetings {
-                let group = &robot.groups[group as usize];
-                let solid = &obstacles[obstacle as usize];
-                let slack = self.rounding + solid.pad + room.max(0.0);
-                if group.bodies.len() > 1 {
-                    let centre = self.frames.centre(group.ball, group.frame);
-                    let outer = robot.spheres[group.ball].outer + slack;
-                    let question = Question { limit: self.splat(outer), coarse: COARSE * outer };
-                    let least = solid.squared_distance(self.simd, &centre, question).0;
-                    if !least.less_equal(self.splat(outer * outer)).any() {
+        for &Meeting { group, obstacle, room } in meetings {
+            let group = &robot.groups[group as usize];
+            let solid = &obstacles[obstacle as usize];
+            if group.bodies.len() > 1 && !self.compare(group.ball, group.frame, solid, room).0 {
+                continue;
+            }
+            for &i in &group.bodies {
+                let body = &robot.bodies[i];
+                let mut at = body.spheres.start;
+                while at < body.spheres.end {
+                    let sphere = &robot.spheres[at];
+                    if sphere.core <= self.rounding {
+                        at = sphere.next as usize;
                         continue;
                     }
-                }
-                for &i in &group.bodies {
-                    let body = &robot.bodies[i];
-                    let mut at = body.spheres.start;
-                    while at < body.spheres.end {
-                        let sphere = &robot.spheres[at];
-                        let centre = self.frames.centre(at, body.frame);
-                        let outer = sphere.outer + slack;
-                        let leaf = sphere.next as usize == at + 1;
-                        let coarse = if leaf { 0.0 } else { COARSE * sphere.outer };
-                        let question = Question { limit: self.splat(outer), coarse };
-                        let (least, most) = solid.squared_distance(self.simd, &centre, question);
-                        let maybe = least.less_equal(self.splat(outer * outer));
-                        if !maybe.any() {
-                            at = sphere.next as usize;
-                            continue;
-                        }
-                        let inner = sphere.inner + room - self.rounding;
-                        let tells = sphere.inner > self.rounding && room >= 0.0;
-                        if tells && most.less_equal(self.splat(inner * inner)).any() {
-                            return Some(Close::Obstacle { body: i as u32, obstacle });
-                        }
-                        at += 1;
-                        if leaf {
-                            self.open = self.open.or(maybe);
-                        }
+                    let (near, most) = self.compare(at, body.frame, solid, room);
+                    if !near {
+                        at = sphere.next as usize;
+                        continue;
                     }
+                    if sphere.inner > self.rounding && sphere.touches(most, room, self.rounding) {
+                        return Some(Suspect { body: i as u32, sphere: at as u32, obstacle, room });
+                    }
+                    at += 1;
                 }
             }
         }
         None
     }
 
+    /// Whether a sphere inside of the robot, this one or one below it, may touch; and the square of how far this one is away at most.
     #[inline(always)]
-    fn against_itself(&mut self) -> Option<Close> {
+    fn compare(&mut self, sphere: usize, frame: usize, solid: &Obstacle, room: f32) -> (bool, Lanes<S>) {
+        let question = self.view.robot.question(self.simd, sphere, room);
+        let (least, most) = solid.squared_distance(self.simd, &self.frames.centre(sphere, frame), question);
+        (least.less_equal(question.limit * question.limit).any(), most)
+    }
+
+    #[inline(always)]
+    fn against_itself(&mut self) -> Option<u32> {
         let View { robot, from, difference, .. } = *self.view;
         let (mut groups, mut apart) = ((usize::MAX, usize::MAX), false);
         for (i, pair) in robot.pairs.iter().enumerate() {
@@ -170,8 +174,7 @@ impl<S: Simd> Eye<'_, S> {
                         &self.frames.centre(one.ball, one.frame),
                         &self.frames.centre(other.ball, other.frame),
                     );
-                    let reach = robot.spheres[one.ball].outer + robot.spheres[other.ball].outer;
-                    let reach = reach + 2.0 * self.rounding;
+                    let reach = robot.spheres[one.ball].core + robot.spheres[other.ball].core;
                     !dot(&between, &between).less_equal(self.splat(reach * reach)).any()
                 };
             }
@@ -182,14 +185,16 @@ impl<S: Simd> Eye<'_, S> {
             self.stack.push((a.spheres.start as u32, b.spheres.start as u32));
             while let Some((at_a, at_b)) = self.stack.pop() {
                 let (of_a, of_b) = (&robot.spheres[at_a as usize], &robot.spheres[at_b as usize]);
+                if of_a.core.min(of_b.core) <= self.rounding {
+                    continue;
+                }
                 let between = minus(
                     &self.frames.centre(at_a as usize, a.frame),
                     &self.frames.centre(at_b as usize, b.frame),
                 );
                 let squared = dot(&between, &between);
-                let outer = of_a.outer + of_b.outer + 2.0 * self.rounding;
-                let maybe = squared.less_equal(self.splat(outer * outer));
-                if !maybe.any() {
+                let core = of_a.core + of_b.core;
+                if !squared.less_equal(self.splat(core * core)).any() {
                     continue;
                 }
                 // Only now is the table worth its time.
@@ -206,12 +211,13 @@ impl<S: Simd> Eye<'_, S> {
                     && of_b.inner > self.rounding
                     && squared.less_equal(self.splat(inner * inner)).any()
                 {
-                    return Some(Close::Pair(i as u32));
+                    return Some(i as u32);
                 }
                 let (leaf_a, leaf_b) = (of_a.next == at_a + 1, of_b.next == at_b + 1);
                 if leaf_a && leaf_b {
-                    self.open = self.open.or(maybe);
-                } else if leaf_b || (!leaf_a && of_a.outer >= of_b.outer) {
+                    continue;
+                }
+                if leaf_b || (!leaf_a && of_a.outer >= of_b.outer) {
                     children(&robot.spheres, at_a, |child| self.stack.push((child, at_b)));
                 } else {
                     children(&robot.spheres, at_b, |child| self.stack.push((at_a, child)));

@@ -149,6 +149,7 @@ pub(super) fn look<S: Simd>(
         middles,
         halves,
     };
+    kernel.frames.reach(robot.steps.len());
     kernel.set_in_motion(motion);
     kernel.measure(motion, half);
     let hit = kernel.against_obstacles(around).or_else(|| kernel.against_itself(motion, half));

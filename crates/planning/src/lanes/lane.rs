@@ -58,6 +58,11 @@ impl<S: Simd> Lanes<S> {
     }
 
     #[inline(always)]
+    pub(super) fn less_equal_number(self, other: f32) -> Mask<S> {
+        self.less_equal(Self::splat(self.simd, other))
+    }
+
+    #[inline(always)]
     pub(super) fn less(self, other: Self) -> Mask<S> {
         Mask { simd: self.simd, raw: self.simd.less_than_f32s(self.raw, other.raw) }
     }

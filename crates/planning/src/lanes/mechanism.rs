@@ -1,15 +1,19 @@
 //! The robot as the lane kernel sees it: moving frames in a row, and on each of them bodies made of spheres.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use nalgebra::{Point3, Rotation3, Unit, UnitQuaternion, Vector3};
-use robotc_core::geom::{ConvexPart, ConvexParts, SphereCover};
+use pulp::Simd;
+use robotc_core::geom::{ConvexPart, ConvexParts, SphereCover, SphereNode};
 use robotc_core::ids::Idx;
 use robotc_core::model::{Drive, JointMotion};
 use robotc_core::{BodyIdx, Configuration, DofIdx, JointIdx, Kinematics, LinkIdx, Pose, TypedVec};
 
 use super::apart::Apart;
+use super::kernel::COARSE;
+use super::lane::Lanes;
+use super::pile::Question;
 use crate::scene::{Grip, Scene};
 
 /// A robot prepared for vectorised checks of motions of some of its degrees of freedom.
@@ -96,8 +100,20 @@ pub(super) struct Sphere {
     pub(super) centre: [f32; 3],
     pub(super) outer: f32,
     pub(super) inner: f32,
+    /// Inner spheres of this one and of those below it are within this distance; below zero when there are none.
+    pub(super) core: f32,
     /// Position of the first sphere that is not below this one.
     pub(super) next: u32,
+}
+
+impl Sphere {
+    /// Whether in some lane the inner sphere has less `room` than this between it and an obstacle, the square of whose distance from the
+    /// middle is `most`, at most.
+    #[inline(always)]
+    pub(super) fn touches<S: Simd>(&self, most: Lanes<S>, room: f32, rounding: f32) -> bool {
+        let inner = self.inner + room - rounding;
+        most.less_equal_number(inner * inner).any()
+    }
 }
 
 impl LaneRobot {
@@ -203,6 +219,15 @@ impl LaneRobot {
         robot
     }
 
+    /// What a look asks of an obstacle: whether spheres inside of the robot, this one or one below it, may come so near.
+    #[inline(always)]
+    pub(super) fn question<S: Simd>(&self, simd: S, sphere: usize, room: f32) -> Question<S> {
+        let Sphere { outer, core, next, .. } = self.spheres[sphere];
+        let leaf = next as usize == sphere + 1;
+        let limit = Lanes::splat(simd, core + room + self.rounding as f32);
+        Question { limit, coarse: if leaf { 0.0 } else { COARSE * outer } }
+    }
+
     /// Whether a link belongs to the hand.
     pub(super) fn is_of_hand(&self, body: usize) -> bool {
         self.bodies[body].link.is_some_and(|link| self.hand.binary_search(&link).is_ok())
@@ -220,12 +245,14 @@ impl LaneRobot {
         // Spheres around groups come last, and are found again.
         self.ungroup();
         let first = self.spheres.len();
-        for node in cover.nodes() {
+        let core = cores(cover.nodes());
+        for (node, core) in cover.nodes().iter().zip(core) {
             let centre = frame_from_body * node.centre;
             self.spheres.push(Sphere {
                 centre: [centre.x as f32, centre.y as f32, centre.z as f32],
                 outer: node.outer as f32,
                 inner: node.inner as f32,
+                core,
                 next: first as u32 + node.next,
             });
         }
@@ -438,7 +465,8 @@ impl Step {
     /// Joint value at the start of a motion, brought near zero when it is an angle, and its change along the motion.
     pub(super) fn motion(&self, from: &[f64], difference: &[f64]) -> (f64, f64) {
         let value = self.factor * from[self.column] + self.offset;
-        let value = if self.slides { value } else { value - TAU * (value / TAU).round() };
+        let far = !self.slides && value.abs() > PI;
+        let value = if far { value - TAU * (value / TAU).round() } else { value };
         (value, self.factor * difference[self.column])
     }
 }
@@ -456,7 +484,19 @@ fn around(spheres: &[Sphere]) -> Option<Sphere> {
     };
     let outer = spheres.iter().map(reach).reduce(f64::max)?;
     // A hair more, for rounding.
-    Some(Sphere { centre, outer: (outer * (1.0 + 1e-6)) as f32, inner: 0.0, next: 0 })
+    let outer = (outer * (1.0 + 1e-6)) as f32;
+    Some(Sphere { centre, outer, inner: 0.0, core: outer, next: 0 })
+}
+
+/// For each node, how far from its centre inner spheres of it and of those below it reach; -1 where there are none.
+fn cores(nodes: &[SphereNode]) -> Vec<f32> {
+    let core = |(i, node): (usize, &SphereNode)| {
+        let inside = nodes[i..node.next as usize].iter().filter(|below| below.inner > 0.0);
+        let reach = inside.map(|below| (below.centre - node.centre).norm() + below.inner);
+        // A hair more, for rounding.
+        reach.reduce(f64::max).map_or(-1.0, |reach| (reach * (1.0 + 1e-6)) as f32)
+    };
+    nodes.iter().enumerate().map(core).collect()
 }
 
 /// A coefficient that is zero but for rounding becomes zero, which the kernel skips.

@@ -18,6 +18,7 @@ mod mechanism;
 mod obstacle;
 mod pile;
 mod settle;
+mod suspects;
 #[cfg(test)]
 mod tests;
 mod width;

@@ -45,6 +45,15 @@ impl Width {
         }
     }
 
+    /// These lanes, but no more than eight.
+    pub(super) fn narrow(self) -> Self {
+        match self.0 {
+            #[cfg(target_arch = "x86_64")]
+            Kind::Sixteen(simd) => Self(Kind::Eight(*simd)),
+            kind => Self(kind),
+        }
+    }
+
     /// Runs code in these lanes.
     pub(super) fn dispatch<W: WithSimd>(self, work: W) -> W::Output {
         match self.0 {
