@@ -19,6 +19,9 @@ use crate::workspace;
 const FIXTURES: &str = "crates/cli/tests/fixtures";
 const TASK: &str = "tidy.task.toml";
 
+/// Stands for the number of a run in the address of a depot.
+const RUN: &str = "RUN";
+
 /// Numbers of shards that are tried.
 const SHARDS: [usize; 3] = [1, 3, 7];
 
@@ -31,20 +34,20 @@ pub(crate) fn run(args: &[String]) -> anyhow::Result<()> {
     let bucket = Bucket::start(folder.path())?;
     let database = Database::start(folder.path())?;
 
-    let place = folder.path().join("depot");
+    let under = |name: &str| folder.path().join(name).join(RUN);
     let mut depots = vec![
-        ("folder", place.display().to_string()),
-        ("`file://`", format!("file://{}", folder.path().join("objects").display())),
+        ("folder", under("depots").display().to_string()),
+        ("`file://`", format!("file://{}", under("objects").display())),
     ];
-    std::fs::create_dir(folder.path().join("objects"))?;
     if let Some(bucket) = &bucket {
-        depots.push(("`s3://`", format!("s3://{}/kb", bucket.name)));
+        depots.push(("`s3://`", format!("s3://{}/{RUN}", bucket.name)));
     }
     if let Some(database) = &database {
         depots.push(("`postgres://`", database.address.clone()));
     }
     if let (Some(bucket), Some(database)) = (&bucket, &database) {
-        depots.push(("`s3://` and `postgres://`", format!("s3://{}/kb,{}", bucket.name, database.address)));
+        depots
+            .push(("`s3://` and `postgres://`", format!("s3://{}/{RUN},{}", bucket.name, database.address)));
     }
     let mut workshop = Workshop { program, folder: folder.path().to_owned(), settings: BTreeMap::new() };
     workshop.settings.extend(bucket.iter().flat_map(|bucket| bucket.settings.clone()));
@@ -59,24 +62,28 @@ pub(crate) fn run(args: &[String]) -> anyhow::Result<()> {
     println!("| depot | shards | trials | whole | kills | seconds a trial |\n|---|---|---|---|---|---|");
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let mut number = 0;
+    // An empty depot for each run: a place of its own, and where that is a database, emptied.
+    let mut empty = |depot: &str| -> anyhow::Result<String> {
+        number += 1;
+        if let Some(database) = &database {
+            database.clear()?;
+        }
+        let address = depot.replace(RUN, &number.to_string());
+        if let Some(place) = address.strip_prefix("file://") {
+            std::fs::create_dir_all(place)?;
+        }
+        Ok(address)
+    };
     for (name, depot) in &depots {
         for shards in SHARDS {
             let (start, mut kills) = (Instant::now(), 0);
             for _ in 0..trials {
-                number += 1;
-                let address = depot.replacen("/kb", &format!("/kb{number}"), 1);
-                let address = if *name == "folder" { format!("{depot}{number}") } else { address };
-                if let Some(database) = &database {
-                    database.clear()?;
-                }
-                kills += workshop.trial(&address, shards, &expected, &mut random)?;
+                kills += workshop.trial(&empty(depot)?, shards, &expected, &mut random)?;
             }
             let seconds = start.elapsed().as_secs_f64() / f64::from(trials);
             println!("| {name} | {shards} | {trials} | {trials} | {kills} | {seconds:.0} |");
         }
-        workshop
-            .share(&depot.replacen("/kb", "/kbshared", 1), &expected)
-            .with_context(|| (*name).to_owned())?;
+        workshop.share(&empty(depot)?, &expected).with_context(|| (*name).to_owned())?;
     }
     Ok(())
 }

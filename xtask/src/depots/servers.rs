@@ -101,7 +101,9 @@ impl Database {
     /// `None`, and a word about it, where there is no PostgreSQL.
     pub(super) fn start(folder: &Path) -> anyhow::Result<Option<Self>> {
         let Some(programs) = programs() else {
-            println!("postgres: skipped: no initdb and postgres found");
+            println!(
+                "postgres: skipped: no initdb and postgres found; on Debian, `apt-get install postgresql`"
+            );
             return Ok(None);
         };
         // Neither runs as root, who hands them to the user that came with them.
@@ -152,10 +154,17 @@ impl Database {
     }
 }
 
-/// The folder of `initdb` and `postgres`.
+/// The folder of `initdb` and `postgres`: one of the path, or where Debian keeps them, the newest first.
 fn programs() -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
+    let mut packaged: Vec<PathBuf> = std::fs::read_dir("/usr/lib/postgresql")
+        .into_iter()
+        .flatten()
+        .filter_map(|version| Some(version.ok()?.path().join("bin")))
+        .collect();
+    packaged.sort();
     std::env::split_paths(&path)
+        .chain(packaged.into_iter().rev())
         .find(|folder| folder.join("initdb").exists() && folder.join("postgres").exists())
 }
 

@@ -46,7 +46,7 @@ pub fn within(a: &ConvexPart, world_from_a: &Pose, b: &ConvexPart, world_from_b:
 }
 
 /// Whether some part of `a` and some part of `b` are not more than `margin` metres apart. "No" is certain; doubt counts
-/// as "yes". Parts whose bounding spheres are far from each other are not looked at.
+/// as "yes". Parts of which the sphere around one is far from the box around the other are not looked at.
 pub fn any_within(
     a: &ConvexParts,
     world_from_a: &Pose,
@@ -62,8 +62,14 @@ pub fn any_within(
         let centre = Point3::from(rotation * centre.coords + shift);
         a.iter().any(|part_a| {
             // A nanometre more than the margin, for rounding.
-            let reach = radius_b + margin + 1e-9;
-            if part_a.bounds().distance_to(&centre) > reach {
+            let reach = margin + 1e-9;
+            if part_a.bounds().distance_to(&centre) > radius_b + reach {
+                return false;
+            }
+            // The sphere of something long, such as a counter, says little; its box says more.
+            let (centre_a, radius_a) = part_a.bounding_sphere();
+            let centre_a = Point3::from(rotation.tr_mul(&(centre_a.coords - shift)));
+            if part_b.bounds().distance_to(&centre_a) > radius_a + reach {
                 return false;
             }
             let pair = Pair::with_matrix(part_a, part_b, rotation, shift);

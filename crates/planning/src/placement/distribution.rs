@@ -16,7 +16,7 @@ pub trait BaseDistribution {
     fn mass(&mut self, arm: usize, world_from_tool: &Pose) -> f64;
 
     /// x, y and heading of a base, drawn the more often the more configurations reach the pose from there; `None` when it is
-    /// out of reach from everywhere.
+    /// out of reach from everywhere, or when none was found this time and another pose may be luckier.
     fn draw(&mut self, arm: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<[f64; 3]>;
 }
 

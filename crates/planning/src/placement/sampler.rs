@@ -52,6 +52,9 @@ impl Default for PlacementOptions {
     }
 }
 
+/// So many draws that give no place count as one: they take that much less time.
+const UNDRAWN: u32 = 100;
+
 /// What is behind a goal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Placement {
@@ -74,6 +77,8 @@ pub struct PlacementRejections {
     pub grasps: u32,
     /// Grasps that are out of reach from everywhere.
     pub hopeless: u32,
+    /// Times that no place was drawn for a grasp, and another grasp was chosen.
+    pub undrawn: u32,
     /// Places where the base is not free.
     pub bases: u32,
     /// Places from which the grasp is out of reach after all.
@@ -168,9 +173,12 @@ impl<'a, P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> BasePlaceme
                 return None;
             }
         }
-        self.rejections.places += 1;
         let world_from_tool = &self.arms[arm].grasps[grasp];
-        let base = self.distribution.draw(arm, world_from_tool, &mut self.rng)?;
+        let Some(base) = self.distribution.draw(arm, world_from_tool, &mut self.rng) else {
+            self.rejections.undrawn += 1;
+            return None;
+        };
+        self.rejections.places += 1;
         if let Err(by) = self.problem.base_is_free(arm, &base) {
             self.reject(by);
             self.rejections.bases += 1;
@@ -199,9 +207,11 @@ impl<'a, P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> BasePlaceme
 
 impl<P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> GoalSampler for BasePlacement<'_, P, D> {
     fn draw(&mut self, budget: &Budget<'_>) -> Result<GoalDraw, Interrupt> {
-        for _ in 0..self.options.places.max(1) {
+        let end = self.rejections.places.saturating_add(self.options.places.max(1));
+        while self.rejections.places < end {
             budget.check()?;
-            if self.left.is_empty() || self.rejections.places >= self.options.max_places {
+            let drawn = self.rejections.places.saturating_add(self.rejections.undrawn / UNDRAWN);
+            if self.left.is_empty() || drawn >= self.options.max_places {
                 return Ok(GoalDraw::Exhausted);
             }
             if let Some(placement) = self.try_place() {

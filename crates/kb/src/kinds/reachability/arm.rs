@@ -127,6 +127,11 @@ impl ArmAlone {
         &self.links
     }
 
+    /// The arm's mechanism.
+    pub fn kinematics(&self) -> &Kinematics {
+        &self.kinematics
+    }
+
     /// The pose of the chain's base in the frame of the mechanism's root.
     pub fn root_from_base(&self) -> Pose {
         let mut scratch = Scratch::default();

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
+use robotc_core::Pose;
 use robotc_core::rng::Rng;
-use robotc_core::{Pose, Seed};
 use robotc_planning::placement::{BaseDistribution, Prism};
 
 use super::floor::Floor;
@@ -23,45 +23,43 @@ pub struct MountedArm<'a> {
 
 /// Bases from which maps say that arms reach, and whose footprint is clear of obstacles.
 ///
-/// A few bases are drawn uniformly from the disc that holds them all: where every third reaches and is clear, one is found before a
-/// distribution is made. For other poses that is made, and kept (thesis, section 4.5): of its samples all reach, and the first that is
-/// clear is taken. Only where hardly any is, its cells are pruned.
+/// They are drawn uniformly from the disc that holds them all until the map says yes and the footprint is clear. A draw gives up
+/// soon, so that another pose is tried: those with many such bases are drawn the more often, and what obstacles leave of a pose counts,
+/// not what there would be without them. Where hardly any base is good, the distribution of the pose is made and pruned
+/// (thesis, section 4.5), and drawn from as often as bases would have been found.
 pub struct MapBases<'a> {
     arms: Vec<MountedArm<'a>>,
     around: Option<(&'a Floor, &'a Prism)>,
-    masses: Vec<(usize, Pose, f64)>,
-    placements: Vec<Made>,
+    poses: Vec<Asked>,
 }
 
-/// The distribution of a pose.
-struct Made {
+/// What is known of a pose.
+struct Asked {
     arm: usize,
     world_from_tool: Pose,
-    placements: Placements,
-    pruned: bool,
+    target: Target,
+    /// Radius of a disc that holds all bases that reach it; `None` when there is none.
+    radius: Option<f64>,
+    /// Bases drawn since the last good one.
+    missed: u32,
+    /// Bases of the pose, and how often one is found where [`TRIES`] are drawn.
+    made: Option<(Placements, f64)>,
 }
 
-/// Bases from which the mass of a pose is guessed.
-const GUESSED: u32 = 12;
+/// Bases drawn for one pose before another is tried.
+const TRIES: u32 = 8;
 
-/// Uniform bases until one is clear and reaches: as many as take about as long as making a distribution.
-const UNIFORM: usize = 24;
-
-/// Samples of a distribution until one is clear.
-const TRIES: usize = 100;
+/// Bases drawn in vain before a distribution is made and pruned: they take about as long.
+const PATIENCE: u32 = 4000;
 
 impl<'a> MapBases<'a> {
     /// Bases for these arms, on a floor with obstacles or on an empty one.
     pub fn new(arms: Vec<MountedArm<'a>>, around: Option<(&'a Floor, &'a Prism)>) -> Self {
-        Self { arms, around, masses: Vec::new(), placements: Vec::new() }
+        Self { arms, around, poses: Vec::new() }
     }
 
     fn is_clear(&self, placement: &Placement) -> bool {
         self.around.is_none_or(|(floor, base)| floor.is_clear(base, placement))
-    }
-
-    fn target(&self, arm: usize, world_from_tool: &Pose) -> Target {
-        Target { world_from_tip: world_from_tool * self.arms[arm].tool_from_tip, weight: 1.0 }
     }
 
     /// Radius of a disc about the target that holds all bases that reach it; `None` when there is none.
@@ -77,84 +75,66 @@ impl<'a> MapBases<'a> {
         mounts.iter().filter_map(of_mount).reduce(f64::max)
     }
 
-    /// A base anywhere in the disc, if the map says yes.
-    fn try_one(&self, arm: usize, target: &Target, radius: f64, rng: &mut Rng) -> Option<Placement> {
+    /// Position of what is known of a pose.
+    fn asked(&mut self, arm: usize, world_from_tool: &Pose) -> usize {
+        let is_this = |asked: &Asked| asked.arm == arm && asked.world_from_tool == *world_from_tool;
+        self.poses.iter().position(is_this).unwrap_or_else(|| {
+            let world_from_tip = world_from_tool * self.arms[arm].tool_from_tip;
+            let target = Target { world_from_tip, weight: 1.0 };
+            let radius = self.radius(arm, &target);
+            let world_from_tool = *world_from_tool;
+            self.poses.push(Asked { arm, world_from_tool, target, radius, missed: 0, made: None });
+            self.poses.len() - 1
+        })
+    }
+
+    /// A base anywhere in the disc, if the map says yes and it is clear.
+    fn try_one(&self, asked: &Asked, radius: f64, rng: &mut Rng) -> Option<Placement> {
         let (distance, angle) = (radius * rng.unit().sqrt(), rng.range(-PI, PI));
-        let p = target.world_from_tip.translation.vector;
+        let p = asked.target.world_from_tip.translation.vector;
         let position = [p.x + distance * libm::cos(angle), p.y + distance * libm::sin(angle)];
         let placement = Placement { position, yaw: rng.range(-PI, PI), target: 0, mount: 0 };
-        let MountedArm { map, mounts, .. } = &self.arms[arm];
-        let mobile_from_tip = placement.world_from_mobile().inv_mul(&target.world_from_tip);
+        let MountedArm { map, mounts, .. } = &self.arms[asked.arm];
+        let mobile_from_tip = placement.world_from_mobile().inv_mul(&asked.target.world_from_tip);
         let reached = |mount: &Pose| map.verdict(&mount.inv_mul(&mobile_from_tip)) == Verdict::Yes;
-        mounts.iter().any(reached).then_some(placement)
+        (mounts.iter().any(reached) && self.is_clear(&placement)).then_some(placement)
     }
 
-    /// The area of the bases of a pose, obstacles apart, as far as a few of them tell; zero only when there is none.
-    fn guess(&mut self, arm: usize, world_from_tool: &Pose) -> f64 {
-        let target = self.target(arm, world_from_tool);
-        let Some(radius) = self.radius(arm, &target) else { return 0.0 };
-        let mut rng = Seed::new(0).split("bases of a pose").rng();
-        let found = (0..GUESSED).filter(|_| self.try_one(arm, &target, radius, &mut rng).is_some()).count();
-        if found == 0 {
-            let made = self.made(arm, world_from_tool);
-            if self.placements[made].placements.is_empty() {
-                return 0.0;
-            }
+    /// The bases of a pose that are clear, and how often one is found where [`TRIES`] are drawn.
+    fn make(&self, asked: &Asked, radius: f64) -> (Placements, f64) {
+        let MountedArm { map, mounts, .. } = &self.arms[asked.arm];
+        let mut placements = Placements::new(map, &[asked.target], mounts, Trust::Whole);
+        if let Some((floor, base)) = self.around {
+            placements.prune(|placement| floor.is_clear(base, placement));
         }
-        (found as f64).max(0.25) / f64::from(GUESSED) * PI * radius * radius
-    }
-
-    /// Position of the distribution of a pose, which is made unless it was before.
-    fn made(&mut self, arm: usize, world_from_tool: &Pose) -> usize {
-        let is_this = |made: &Made| made.arm == arm && made.world_from_tool == *world_from_tool;
-        self.placements.iter().position(is_this).unwrap_or_else(|| {
-            let MountedArm { map, mounts, .. } = &self.arms[arm];
-            let target = self.target(arm, world_from_tool);
-            let placements = Placements::new(map, &[target], mounts, Trust::Whole);
-            self.placements.push(Made { arm, world_from_tool: *world_from_tool, placements, pruned: false });
-            self.placements.len() - 1
-        })
+        let share = (placements.mass() / (PI * radius * radius)).min(1.0);
+        (placements, 1.0 - (1.0 - share).powi(TRIES as i32))
     }
 }
 
 impl BaseDistribution for MapBases<'_> {
     fn mass(&mut self, arm: usize, world_from_tool: &Pose) -> f64 {
-        let known = self.masses.iter().find(|(number, pose, _)| *number == arm && pose == world_from_tool);
-        if let Some((_, _, mass)) = known {
-            return *mass;
-        }
-        let mass = self.guess(arm, world_from_tool);
-        self.masses.push((arm, *world_from_tool, mass));
-        mass
+        let asked = self.asked(arm, world_from_tool);
+        if self.poses[asked].radius.is_some() { 1.0 } else { 0.0 }
     }
 
     fn draw(&mut self, arm: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<[f64; 3]> {
-        let target = self.target(arm, world_from_tool);
-        let radius = self.radius(arm, &target)?;
-        let found = (0..UNIFORM)
-            .find_map(|_| {
-                self.try_one(arm, &target, radius, rng).filter(|placement| self.is_clear(placement))
-            })
-            .or_else(|| self.draw_made(arm, world_from_tool, rng))?;
-        Some([found.position[0], found.position[1], found.yaw])
-    }
-}
-
-impl MapBases<'_> {
-    /// A clear sample of the distribution of a pose, which is pruned when there are few.
-    fn draw_made(&mut self, arm: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<Placement> {
-        let made = self.made(arm, world_from_tool);
-        let clear = |this: &Self, rng: &mut Rng| {
-            this.placements[made].placements.sample_where(rng, TRIES, |placement| this.is_clear(placement))
-        };
-        let found = clear(self, rng);
-        if found.is_some() || self.placements[made].pruned {
-            return found;
+        let at = self.asked(arm, world_from_tool);
+        let asked = &self.poses[at];
+        let radius = asked.radius?;
+        let base = |found: Placement| [found.position[0], found.position[1], found.yaw];
+        if asked.missed >= PATIENCE && asked.made.is_none() {
+            self.poses[at].made = Some(self.make(asked, radius));
         }
-        if let (Some((floor, base)), made) = (self.around, &mut self.placements[made]) {
-            made.placements.prune(|placement| floor.is_clear(base, placement));
+        let asked = &self.poses[at];
+        if let Some((placements, often)) = &asked.made {
+            if rng.unit() >= *often {
+                return None;
+            }
+            return placements.sample_where(rng, 100, |placement| self.is_clear(placement)).map(base);
         }
-        self.placements[made].pruned = true;
-        clear(self, rng)
+        let found = (0..TRIES).find_map(|_| self.try_one(asked, radius, rng));
+        self.poses[at].missed = if found.is_some() { 0 } else { self.poses[at].missed + TRIES };
+        found.map(base)
     }
 }
