@@ -62,13 +62,9 @@ impl<'a> RobotChecker<'a> {
         rules: Rules,
         resolution: f64,
     ) -> Self {
-        let rows = scene.rows.of(scene, dofs);
-        let mut bounds = rows.bounds.clone();
-        if let Some(grip) = &rules.held {
-            rows.of_held(scene, grip, &rules.gripper, &mut bounds);
-        }
+        let (pairs, bounds) = Pairs::new(scene, dofs, &rules);
         Self {
-            pairs: Pairs::new(scene, dofs, &rules),
+            pairs,
             bounds,
             scene,
             space,

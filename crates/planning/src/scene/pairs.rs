@@ -58,12 +58,15 @@ enum Keeps {
 const RELATIVE: f64 = 0.1;
 
 impl Pairs {
-    /// Under `rules`, with the bodies where they are in the scene.
-    pub(super) fn new(scene: &Scene, dofs: &[DofIdx], rules: &Rules) -> Self {
+    /// Under `rules`, with the bodies where they are in the scene; and bounds on how far everything travels.
+    pub(super) fn new(scene: &Scene, dofs: &[DofIdx], rules: &Rules) -> (Self, TravelBounds) {
         let known = scene.rows.of(scene, dofs);
+        let mut bounds = known.bounds.clone();
+        // Links and what is held against bodies, and links against links and what is held.
+        let most_rows = 2 * known.links.len() + 1 + known.pairs.len();
         let mut pairs = Self {
-            list: Vec::new(),
-            rows: Vec::new(),
+            list: Vec::with_capacity((known.links.len() + 1) * (scene.bodies.len() + 1) + known.pairs.len()),
+            rows: Vec::with_capacity(most_rows * dofs.len()),
             columns: Vec::new(),
             dofs: dofs.len(),
             body_from_robot: scene
@@ -91,7 +94,7 @@ impl Pairs {
         let of_held = rules
             .held
             .as_ref()
-            .map(|grip| (grip.body, known.of_held(scene, grip, &rules.gripper, &mut known.bounds.clone())));
+            .map(|grip| (grip.body, known.of_held(scene, grip, &rules.gripper, &mut bounds)));
         if let Some((body, (row, _))) = &of_held {
             let keeps = rules.sink.map_or(Keeps::Margin(rules.margin), Keeps::Depth);
             let others = bodies().filter(|other| other != body).map(|other| (Other::Body(other), keeps));
@@ -104,8 +107,9 @@ impl Pairs {
             pairs.add(Mover::Held, row, [(Other::Link(*link), Keeps::Margin(0.0))]);
         }
         let column = |dof: usize| pairs.rows.iter().skip(dof).step_by(dofs.len()).copied();
-        pairs.columns = (0..dofs.len()).flat_map(column).collect();
-        pairs
+        pairs.columns = Vec::with_capacity(pairs.rows.len());
+        (0..dofs.len()).for_each(|dof| pairs.columns.extend(column(dof)));
+        (pairs, bounds)
     }
 
     fn add(&mut self, one: Mover, row: &[f64], others: impl IntoIterator<Item = (Other, Keeps)>) {
