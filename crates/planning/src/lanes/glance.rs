@@ -6,9 +6,10 @@
 
 use pulp::{Simd, WithSimd};
 
+use super::apart::Apart;
 use super::frames::Frames;
 use super::kernel::{MOST_LANES, Motion, Scratch, children};
-use super::lane::{Lanes, dot, minus};
+use super::lane::{Lanes, Mask, dot, minus};
 use super::mechanism::LaneRobot;
 use super::obstacle::Obstacle;
 use super::suspects::Suspect;
@@ -77,6 +78,7 @@ impl WithSimd for Look<'_> {
                 simd,
                 view: &view,
                 frames,
+                along,
                 stack: &mut scratch.stack,
                 standings: &mut scratch.standings,
                 rounding: robot.rounding as f32,
@@ -107,6 +109,8 @@ struct Eye<'a, S: Simd> {
     simd: S,
     view: &'a View<'a>,
     frames: Frames<'a, S>,
+    /// Where along the motion they are.
+    along: Lanes<S>,
     stack: &'a mut Vec<(u32, u32)>,
     standings: &'a mut [Standing],
     rounding: f32,
@@ -181,6 +185,8 @@ impl<S: Simd> Eye<'_, S> {
             if apart || self.standings[i] == Standing::Apart {
                 continue;
             }
+            // Lanes in which the table of the pair does not tell that the two are apart.
+            let mut doubtful = None;
             self.stack.clear();
             self.stack.push((a.spheres.start as u32, b.spheres.start as u32));
             while let Some((at_a, at_b)) = self.stack.pop() {
@@ -194,16 +200,21 @@ impl<S: Simd> Eye<'_, S> {
                 );
                 let squared = dot(&between, &between);
                 let core = of_a.core + of_b.core;
-                if !squared.less_equal(self.splat(core * core)).any() {
+                let near = squared.less_equal(self.splat(core * core));
+                if !near.any() {
                     continue;
                 }
                 // Only now is the table worth its time.
-                if self.standings[i] == Standing::Unknown {
-                    let table = pair.apart.as_ref();
-                    let holds = table.is_some_and(|table| table.holds(from, difference));
-                    self.standings[i] = if holds { Standing::Apart } else { Standing::Doubtful };
-                    if holds {
+                if let Some(table) = &pair.apart {
+                    if self.standings[i] == Standing::Unknown {
+                        let holds = table.holds(from, difference);
+                        self.standings[i] = if holds { Standing::Apart } else { Standing::Doubtful };
+                    }
+                    if self.standings[i] == Standing::Apart {
                         break;
+                    }
+                    if !near.and(*doubtful.get_or_insert_with(|| self.doubtful(table))).any() {
+                        continue;
                     }
                 }
                 let inner = of_a.inner + of_b.inner - 2.0 * self.rounding;
@@ -225,5 +236,19 @@ impl<S: Simd> Eye<'_, S> {
             }
         }
         None
+    }
+
+    /// Lanes in which a pair is not known to be apart.
+    #[inline(always)]
+    fn doubtful(&self, table: &Apart) -> Mask<S> {
+        let View { from, difference, .. } = *self.view;
+        let (mut along, mut numbers) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
+        self.simd.partial_store_f32s(&mut along[..S::F32_LANES], self.along.raw);
+        for (number, &at) in numbers.iter_mut().zip(&along[..S::F32_LANES]) {
+            let at = f64::from(at);
+            *number = if table.holds_within(from, difference, at, at) { 0.0 } else { 1.0 };
+        }
+        let numbers = Lanes::new(self.simd, self.simd.partial_load_f32s(&numbers[..S::F32_LANES]));
+        self.splat(0.0).less(numbers)
     }
 }

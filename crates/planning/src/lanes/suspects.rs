@@ -24,7 +24,7 @@ pub(super) struct Suspect {
 pub(super) struct Suspects(Vec<Suspect>);
 
 /// How many are remembered.
-const MOST: usize = 8;
+const MOST: usize = 16;
 
 impl Suspects {
     pub(super) fn new() -> Self {

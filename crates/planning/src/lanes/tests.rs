@@ -214,6 +214,11 @@ fn what_a_first_look_blocks_is_blocked_with_any_number_of_lanes() {
     let bench = bench(false, &covers(), &mut rng);
     let mut memory = LaneMemory::default();
     let mut thorough = bench.lanes(Width::widest(), &mut memory);
+    // These remember what they hit.
+    let mut memories: Vec<LaneMemory> = Width::all().iter().map(|_| LaneMemory::default()).collect();
+    let each = Width::all().into_iter().zip(&mut memories);
+    let mut lasting: Vec<_> = each.map(|(width, memory)| bench.lanes(width, memory)).collect();
+    lasting.iter_mut().for_each(|lanes| lanes.set_patience(Patience::Hopeful));
     let (mut passed, mut blocked, mut misled) = (0, 0, 0);
     for _ in 0..300 {
         let from = bench.space.sample(&mut rng);
@@ -225,7 +230,8 @@ fn what_a_first_look_blocks_is_blocked_with_any_number_of_lanes() {
             lanes.set_patience(Patience::Hopeful);
             lanes.edge(&from, &to).is_ok()
         });
-        let looks: Vec<bool> = looks.collect();
+        let remembering = lasting.iter_mut().map(|lanes| lanes.edge(&from, &to).is_ok());
+        let looks: Vec<bool> = looks.chain(remembering).collect();
         assert!(looks.iter().all(|look| *look == looks[0]) && (looks[0] || !free), "{from:?} {to:?}");
         passed += usize::from(looks[0] && free);
         misled += usize::from(looks[0] && !free);

@@ -1,6 +1,5 @@
 //! A search tree in flat memory that is kept from one search to the next.
 
-use std::array::from_fn;
 use std::f32::consts::TAU;
 
 use pulp::NullaryFnOnce;
@@ -204,8 +203,12 @@ impl NullaryFnOnce for Nearest<'_> {
         }
         let mut nearest = least;
         halve(&mut nearest, |a, b| if b < a { b } else { a });
-        let mut nodes: [u32; BLOCK] =
-            from_fn(|k| if least[k] == nearest[0] { blocks[k] * BLOCK as u32 + k as u32 } else { u32::MAX });
+        let mut nodes = [u32::MAX; BLOCK];
+        for k in 0..BLOCK {
+            if least[k] == nearest[0] {
+                nodes[k] = blocks[k] * BLOCK as u32 + k as u32;
+            }
+        }
         halve(&mut nodes, |a, b| a.min(b));
         nodes[0] as usize
     }
