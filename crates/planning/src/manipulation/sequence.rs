@@ -69,6 +69,10 @@ pub(super) struct Reached {
     pub(super) q: Configuration,
 }
 
+/// Rounds without any progress after which the goals that are left are given up, where some were reached: other draws of destinations may
+/// fit into what room is left.
+const STALLED: u32 = 2;
+
 /// Plans all goals of the task, in order; one that fails is tried again after the others, when they have made room.
 ///
 /// The plan holds what could be reached, and says what could not and why; it is an error when that is everything. The
@@ -91,6 +95,7 @@ pub fn pick_and_place(
     let mut values: Vec<f64> = problem.task.articles.iter().map(Article::value).collect();
     let mut plan = Plan::default();
     let mut pending: Vec<usize> = (0..problem.task.goals.len()).collect();
+    let mut stalled = 0;
     for round in 0.. {
         let mut missed: Vec<SkippedGoal> = Vec::new();
         let before = pending.len();
@@ -150,7 +155,8 @@ pub fn pick_and_place(
         }
         pending = missed.iter().map(|m| m.goal).collect();
         let interrupted = missed.iter().any(|m| m.reason.interrupt.is_some());
-        if pending.is_empty() || pending.len() == before || interrupted {
+        stalled += u32::from(pending.len() == before);
+        if pending.is_empty() || interrupted || plan.choices.is_empty() || stalled > STALLED {
             plan.skipped = missed;
             break;
         }
