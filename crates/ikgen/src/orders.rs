@@ -12,7 +12,7 @@ use crate::kernel::vector::{Line, Motion, plus, times};
 use crate::kernel::waves::{MAX_DEGREE, Waves};
 
 /// Waves below this part of the largest are rounding.
-const ROUNDING: f64 = 1e-8;
+const ROUNDING: f64 = 1e-11;
 
 /// The orders that find random joint vectors again, best first: those that miss fewest, then those of the lowest degree, then
 /// the most exact. Orders after the first are only asked where it fails, so they differ in the angle that is found first.

@@ -928,8 +928,8 @@ static int ik_close(const ik_loop *loop, const ik_turn middle[3], ik_turn turns[
     const ik_line *lines = loop->lines;
     ik_line reached = ik_line_turned(&lines[4], &lines[5], middle[2]), goal = ik_line_moved(&loop->goal, &lines[5]);
     ik_vector h1 = lines[0].direction, h2 = lines[1].direction, h6 = lines[5].direction;
-    ik_vector p, l = ik_vector_of(0.0, 0.0, 0.0), g, m, step, moved[2], wanted[2], side, seen;
-    double equations[5][3] = { { 0.0 } }, cc = 0.0, cs = 0.0, ss = 0.0, cr = 0.0, sr = 0.0;
+    ik_vector p, l = ik_vector_of(0.0, 0.0, 0.0), g, m, step, moved[2], wanted[2], side, seen, gap, lean;
+    double equations[5][3] = { { 0.0 } }, cc = 0.0, cs = 0.0, ss = 0.0, cr = 0.0, sr = 0.0, size;
     int i;
     reached = ik_line_turned(&lines[3], &reached, middle[1]);
     reached = ik_line_turned(&lines[2], &reached, middle[0]);
@@ -959,6 +959,11 @@ static int ik_close(const ik_loop *loop, const ik_turn middle[3], ik_turn turns[
     wanted[0] = g;
     wanted[1] = m;
     if (!ik_turn_between(h1, moved, wanted, &turns[0])) return 0;
+    /* Near roots that are no solutions, or of many that fall together, the loop does not close. */
+    gap = ik_minus(ik_turned(&lines[0], moved[0], turns[0]), g);
+    lean = ik_minus(ik_turned(&lines[0], moved[1], turns[0]), m);
+    size = ik_dot(g, g) + ik_dot(p, p) + ik_dot(step, step);
+    if (!(ik_dot(gap, gap) <= size && ik_dot(lean, lean) <= 1.0)) return 0;
     for (i = 0; i < 3; i++) turns[2 + i] = middle[i];
     /* A vector that is not along the last axis shows how far that has turned. */
     side = ik_abs(h6.x[0]) < 0.8 ? ik_vector_of(1.0, 0.0, 0.0) : ik_vector_of(0.0, 1.0, 0.0);
@@ -1192,34 +1197,97 @@ static double ik_rise(const ik_waves *waves, double angle)
     return ik_abs(bends[0]) + IK_NEARLY_REAL * (ik_abs(bends[1]) + 0.5 * IK_NEARLY_REAL * ik_abs(bends[2]));
 }
 
-/* Adds the candidates that show in one view; says whether their roots lie apart. `flat` says whether the polynomial is all but zero
-   somewhere; the view then becomes one of that place. */
-static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int squared, ik_view *view, double slack, ik_candidates *found,
-                   int *flat)
+/* Most views of the polynomial of one order: the whole circle, and places where it is flat. */
+#define IK_VIEWS 4
+
+/* Whether a turn is far from the centre of a narrow view: what is there shows better in the view before. */
+static int ik_beside(const ik_view *view, ik_turn turn)
 {
+    return view->width < 1.0 && turn.c < 0.0;
+}
+
+/* The turn from one to another. */
+static ik_turn ik_between(ik_turn from, ik_turn to)
+{
+    return ik_turn_of(from.c * to.c + from.s * to.s, from.c * to.s - from.s * to.c);
+}
+
+/* Places where the polynomial is all but zero, or misses the determinant, flattest first and as wide as the roots reach that rounding has
+   moved: how many there are, `most` at most, and `more` if there are others. Marks the roots that are there. */
+static int ik_flats(const ik_six_rows *six, int degree, int squared, const ik_view *view, const ik_waves *waves, const ik_root *roots,
+                    const ik_turn *turns, int count, int most, double places[IK_VIEWS][2], int *holds, int *more)
+{
+    double rises[IK_SIZE], least, rise, miss, width, gap, slope;
+    int n = 0, low, at, i;
+    *more = 0;
+    for (i = 0; i < count; i++) {
+        double imaginary = roots[i].imaginary;
+        rises[i] = 1.7976931348623157e308;
+        holds[i] = 0;
+        if (ik_beside(view, turns[i]) || ik_abs(imaginary) >= 1.0 || (squared && ik_abs(imaginary) < IK_NEARLY_REAL)) continue;
+        rise = ik_rise(waves, roots[i].angle);
+        low = rise < IK_FLAT * waves->largest;
+        if (!low && rise < 1e-7 * waves->largest) {
+            /* Waves that are left out of an order because they are small may not be small here. */
+            miss = ik_value_in_view(view, six, degree, roots[i].angle) - ik_waves_at(waves, roots[i].angle, &slope);
+            low = ik_abs(miss) > 0.1 * rise;
+        }
+        if (low) rises[i] = rise;
+    }
+    for (;;) {
+        least = 1.7976931348623157e308;
+        at = 0;
+        for (i = 0; i < count; i++)
+            if (rises[i] < least) {
+                least = rises[i];
+                at = i;
+            }
+        if (!(least < 1.7976931348623157e308)) return n;
+        if (n == most) {
+            *more = 1;
+            return n;
+        }
+        width = 1e-3;
+        for (i = 0; i < count; i++) {
+            ik_turn turn = ik_between(turns[at], turns[i]);
+            gap = ik_abs(turn.s) + ik_abs(roots[i].imaginary);
+            if (rises[i] < 1.7976931348623157e308 && turn.c > 0.0 && gap < 0.5) {
+                if (gap > width) width = gap;
+                rises[i] = 1.7976931348623157e308;
+                holds[i] = 1;
+            }
+        }
+        rises[at] = 1.7976931348623157e308;
+        holds[at] = 1;
+        places[n][0] = roots[at].angle;
+        places[n][1] = width;
+        n++;
+    }
+}
+
+/* Adds the candidates that show in one view; says whether their roots lie apart. Places where the polynomial is all but zero are added to
+   the views, of which there are so many, and may be `most`. */
+static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int squared, ik_view views[IK_VIEWS], int at, int *count_views, int most,
+                   double slack, ik_candidates *found)
+{
+    const ik_view *view = &views[at];
     ik_waves waves = ik_waves_in_view(view, six, degree);
     ik_root roots[IK_SIZE];
     int count = ik_roots_of_waves(&waves, squared, roots), multiplicity = squared ? 2 : 1, apart = count * multiplicity == 2 * degree;
-    int done[IK_SIZE] = { 0 }, near[IK_SIZE], together, pairs_found, fold, merged, many, i, j, k;
-    double least = IK_FLAT * waves.largest, flattest = 0.0, width = 1e-3, height, gap, square, shift, spread, mean, side, exact, off;
-    double starts[IK_SIZE], extremum[3];
-    ik_turn turn, pairs[6][2];
-    *flat = 0;
+    int done[IK_SIZE] = { 0 }, holds[IK_SIZE], near[IK_SIZE], together, pairs_found, fold, merged, many, more, flats, i, j, k;
+    double gap, square, shift, spread, mean, side, exact, off;
+    double starts[IK_SIZE], extremum[3], places[IK_VIEWS][2];
+    ik_turn turn, turns[IK_SIZE], pairs[6][2];
+    for (i = 0; i < count; i++) turns[i] = ik_turn_by(roots[i].angle);
+    flats = ik_flats(six, degree, squared, view, &waves, roots, turns, count, most - *count_views, places, holds, &more);
+    if (more) apart = 0;
     for (i = 0; i < count; i++) {
         double angle = roots[i].angle, imaginary = roots[i].imaginary;
-        if (ik_abs(imaginary) < 1.0 && !(squared && ik_abs(imaginary) < IK_NEARLY_REAL)) {
-            height = ik_rise(&waves, angle);
-            if (height < least) {
-                *flat = 1;
-                flattest = angle;
-                least = height;
-            }
-        }
-        if (done[i] || ik_abs(imaginary) > IK_NEARLY_REAL + 5.0 * ik_sqrt(slack)) continue;
+        if (done[i] || ik_beside(view, turns[i]) || ik_abs(imaginary) > IK_NEARLY_REAL + 5.0 * ik_sqrt(slack)) continue;
         together = 0;
         shift = spread = 0.0;
         for (j = 0; j < count; j++) {
-            turn = ik_turn_by(roots[j].angle - angle);
+            turn = ik_between(turns[i], turns[j]);
             gap = ik_abs(turn.s) + ik_abs(roots[j].imaginary - imaginary);
             near[j] = turn.c > 0.0 && gap < 3e-3;
             if (near[j]) {
@@ -1230,6 +1298,15 @@ static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int 
         }
         /* Roots that nearly fall together: their mean is more exact than each of them. */
         mean = angle + shift * (double)multiplicity / (double)together;
+        if (holds[i]) {
+            /* The rest shows in the view of the place. */
+            for (j = 0; j < count; j++) done[j] |= near[j] && holds[j];
+            turn = ik_turn_in_view(view, mean, &square);
+            k = ik_several(six, turn, pairs, &pairs_found);
+            for (j = 0; j < pairs_found; j++) ik_add_candidate(loop, turn, pairs[j], found);
+            if (k < 2 && ik_single(six, turn, pairs[0])) ik_add_candidate(loop, turn, pairs[0], found);
+            continue;
+        }
         ik_extremum(&waves, mean, extremum);
         fold = together == 2 && !squared && slack == 0.0;
         many = 0;
@@ -1264,35 +1341,28 @@ static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int 
             else apart = 0;
         }
     }
-    if (*flat) {
-        /* As wide as the roots reach that rounding has moved. */
-        for (i = 0; i < count; i++) {
-            turn = ik_turn_by(roots[i].angle - flattest);
-            gap = ik_abs(turn.s) + ik_abs(roots[i].imaginary);
-            if (turn.c > 0.0 && gap < 0.5 && gap > width && ik_rise(&waves, roots[i].angle) < IK_FLAT * waves.largest) width = gap;
-        }
-        turn = ik_turn_in_view(view, flattest, &square);
-        view->centre = turn;
-        view->width = width * view->width / square;
+    for (i = 0; i < flats; i++) {
+        turn = ik_turn_in_view(view, places[i][0], &square);
+        views[*count_views].centre = turn;
+        views[*count_views].width = places[i][1] * view->width / square;
+        (*count_views)++;
     }
     return apart;
 }
 
 /* Adds the candidates of one order; says whether they are all that there are. */
-static int ik_solve_order(const ik_line lines[6], const ik_motion *goal, const double *order, double slack, ik_candidates *found)
+static int ik_solve_order(const ik_line lines[6], const ik_motion *goal, const double *order, double slack, int most, ik_candidates *found)
 {
     ik_loop loop = ik_arrange(lines, goal, (int)order[0]);
     ik_six_rows six;
-    ik_view view;
-    int all = 1, before = found->count, round, flat;
+    /* Views that are left to look at, those of wide places before those within them. */
+    ik_view views[IK_VIEWS];
+    int all = 1, before = found->count, next, end = 1;
     ik_eliminate(loop.lines, &loop.goal, loop.swapped, &six);
-    view.centre = ik_turn_of(1.0, 0.0);
-    view.width = 1.0;
-    for (round = 0; round < 4; round++) {
-        all &= ik_look(&loop, &six, (int)order[1], order[2] > 0.0, &view, slack, found, &flat);
-        if (!flat) return all && found->count > before;
-    }
-    return 0;
+    views[0].centre = ik_turn_of(1.0, 0.0);
+    views[0].width = 1.0;
+    for (next = 0; next < end; next++) all &= ik_look(&loop, &six, (int)order[1], order[2] > 0.0, views, next, &end, most, slack, found);
+    return all && found->count > before;
 }
 
 /* Candidate turns of six joints. The numbers are six lines as direction and point, the rows of the goal's rotation, its place, and three
@@ -1301,8 +1371,8 @@ static int ik_solve_order(const ik_line lines[6], const ik_motion *goal, const d
 static void ik_six(const double numbers[57], double slack, ik_candidates *found)
 {
     ik_line lines[6];
-    ik_motion goal;
-    int i;
+    ik_motion goal, near;
+    int first = 1, i;
     found->count = 0;
     for (i = 0; i < 57; i++)
         if (!ik_finite(numbers[i])) return;
@@ -1313,8 +1383,14 @@ static void ik_six(const double numbers[57], double slack, ik_candidates *found)
     for (i = 0; i < 3; i++) goal.rows[i] = ik_half_of(&numbers[36 + 3 * i]);
     goal.place = ik_half_of(&numbers[45]);
     if (slack > 0.0) goal = ik_nudged(&goal, 0.1 * slack);
-    for (i = 48; i < 57; i += 3)
-        if (numbers[i + 1] > 0.0 && ik_solve_order(lines, &goal, &numbers[i], slack, found) && !(slack > 0.0)) break;
+    for (i = 48; i < 57; i += 3) {
+        if (!(numbers[i + 1] > 0.0)) continue;
+        if (ik_solve_order(lines, &goal, &numbers[i], slack, IK_VIEWS, found) && !(slack > 0.0)) break;
+        /* Solutions that share the angle here do not at a goal nearby. */
+        near = ik_nudged(&goal, 1e-2);
+        if (first && !(slack > 0.0) && ik_solve_order(lines, &near, &numbers[i], slack, 1, found)) break;
+        first = 0;
+    }
 }
 
 /* == piece == */
@@ -1698,7 +1774,7 @@ static int ik_sweep_order(ik_swept *swept, const double numbers[5], double low, 
         resolved = rest < 1e-9 * piece.largest;
         /* Half an interval that is no better than the whole one shows rounding. On an interval with a third on which the function is small
            everywhere roots may be lost in it. */
-        if ((piece.even < 1e-3 || (!resolved && rest < 0.1 * before)) && width > (1.0 / 16384.0) * whole) {
+        if ((piece.even < 1e-3 && width > (1.0 / 512.0) * whole) || (!resolved && rest < 0.1 * before && width > (1.0 / 16384.0) * whole)) {
             before = rest;
             width *= 0.5;
             continue;

@@ -2,10 +2,13 @@
 //!
 //! The kernel's files are formatted, so their items can be told by their lines: an item starts at the margin after an empty line, a
 //! method of an `impl` block one step in. An item is kept when its name is a word of a kept item of its module, or of one that imports it.
+//!
+//! Of its comments a generated file carries the first paragraphs: what is called, not how it was found.
 
 /// The text of modules, each reduced to the items that `code` needs, in the order given; `uses` are the imports of `code`.
 pub(super) fn needed(modules: &[(&str, &str)], uses: &str, code: &str) -> Vec<(String, String)> {
-    let mut modules: Vec<Module> = modules.iter().map(|(name, text)| Module::of(name, text)).collect();
+    let mut modules: Vec<Module> =
+        modules.iter().map(|(name, text)| Module::of(name, &brief(text))).collect();
     // Last the code itself: a module without items.
     modules.push(Module { words: code_of(code), uses: uses.into(), ..Module::of("", "") });
     loop {
@@ -187,6 +190,20 @@ fn import(line: &str, code: &str) -> Option<String> {
         [one] => Some(format!("{before}{one};")),
         _ => Some(format!("{before}{{{}}};", kept.join(", "))),
     }
+}
+
+/// A text with the first paragraph of each of its comments.
+fn brief(text: &str) -> String {
+    let (mut out, mut rest) = (String::new(), false);
+    for line in text.lines() {
+        let comment = line.trim_start();
+        rest = (comment.starts_with("///") || comment.starts_with("//!")) && (rest || comment.len() == 3);
+        if !rest {
+            out += line;
+            out.push('\n');
+        }
+    }
+    out
 }
 
 /// A text without its comments.

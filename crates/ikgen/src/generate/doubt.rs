@@ -14,19 +14,25 @@ const REACH: f64 = 16.0;
 pub(super) fn note_doubts(program: &mut Program) {
     let reach = REACH * program.slack;
     let mut body = std::mem::take(&mut program.body);
-    note(&mut body, &mut program.exprs, reach);
+    note(&mut body, &mut program.exprs, reach, None);
     program.body = body;
 }
 
-fn note(block: &mut Block, exprs: &mut Exprs, reach: f64) {
+/// Notes doubts in a block; `before` is what is left of the tolerance after the equations whose roots the block follows. A root that is
+/// near to another is off by the difference of the chains over a slope: by so much more are the equations after it.
+fn note(block: &mut Block, exprs: &mut Exprs, reach: f64, before: Option<Expr>) {
     let mut noted = Vec::new();
     for mut stmt in std::mem::take(block) {
         match &mut stmt {
             Stmt::ForEach { kind, args, body, .. } => {
+                let mut within = before;
                 if let Some((value, tolerance)) = edge(*kind, args, exprs, reach) {
-                    noted.push(Stmt::Doubt { value, tolerance });
+                    let sure = before.map_or(value, |before| exprs.binary(Binary::Mul, before, value));
+                    noted.push(Stmt::Doubt { value: sure, tolerance });
+                    let slope = slope(value, exprs);
+                    within = Some(before.map_or(slope, |before| exprs.binary(Binary::Mul, before, slope)));
                 }
-                note(body, exprs, reach);
+                note(body, exprs, reach, within);
             }
             // What an ideal chain can do where it lines up, the described one can hardly: that is for the general solver.
             Stmt::Fallback { first, otherwise }
@@ -34,13 +40,13 @@ fn note(block: &mut Block, exprs: &mut Exprs, reach: f64) {
                     && none.is_empty() =>
             {
                 noted.push(Stmt::Doubt { value: *value, tolerance: *tolerance });
-                note(first, exprs, reach);
+                note(first, exprs, reach, before);
                 noted.append(first);
                 continue;
             }
             Stmt::IfZero { then, otherwise, .. } | Stmt::Fallback { first: then, otherwise } => {
-                note(then, exprs, reach);
-                note(otherwise, exprs, reach);
+                note(then, exprs, reach, before);
+                note(otherwise, exprs, reach, before);
             }
             // The general solver has no doubts.
             _ => {}
@@ -48,6 +54,15 @@ fn note(block: &mut Block, exprs: &mut Exprs, reach: f64) {
         noted.push(stmt);
     }
     *block = noted;
+}
+
+/// The slope of an equation at its roots, one at most, by how near it is to losing them.
+fn slope(value: Expr, exprs: &mut Exprs) -> Expr {
+    let minus = exprs.unary(Unary::Neg, value);
+    let distance = exprs.binary(Binary::Max, value, minus);
+    let root = exprs.unary(Unary::Sqrt, distance);
+    let one = exprs.constant(1.0);
+    exprs.binary(Binary::Min, root, one)
 }
 
 /// What is small where the roots of an equation are about to fall together, and how small.

@@ -398,6 +398,11 @@ impl View {
         samples
     }
 
+    /// Whether a turn of `u` is far from the centre of a narrow view: what is there shows better in the view before.
+    pub fn is_beside(&self, turn: [f64; 2]) -> bool {
+        self.width < 1.0 && turn[0] < 0.0
+    }
+
     /// The view of this width round `u`.
     pub fn zoomed(&self, u: f64, width: f64) -> View {
         let (centre, square) = self.turn(u);

@@ -88,6 +88,13 @@ pub const NEARLY_REAL: f64 = 1e-3;
 /// Where the polynomial is smaller than this part of the largest sample, rounding decides where its roots are and which are real.
 const FLAT: f64 = 1e-11;
 
+/// Where the polynomial is smaller than this part of the largest sample, it is compared with the determinant: waves that are left out of
+/// an order because they are small may not be small there.
+const FAINT: f64 = 1e-7;
+
+/// The polynomial is off where it misses the determinant by this part of what it rises to nearby.
+const OFF: f64 = 0.1;
+
 /// Rounding of the polynomial, as part of the largest sample, where it is small.
 const ROUNDING: f64 = 1e-14;
 
@@ -99,6 +106,12 @@ pub const APART: f64 = 3e-3;
 
 /// As far rounding parts a double root. Roots that are farther apart, but not clearly, ask for another order.
 const MERGED: f64 = 1e-5;
+
+/// A candidate is one only if its loop closes to this part of its size, and to this angle.
+const OPEN: f64 = 1.0;
+
+/// How far the goal is at which solutions are looked for that fall together.
+const BESIDE: f64 = 1e-2;
 
 /// Number of orders.
 pub const ORDERS: usize = 24;
@@ -173,6 +186,13 @@ pub fn close(loop_: &Arranged, middle: [[f64; 2]; 3]) -> Option<[[f64; 2]; 3]> {
     let q2 = unit(cr * ss - sr * cs, sr * cc - cr * cs, 0.0)?;
     let moved = [plus(lines[1].turned(p, q2), step), lines[1].turned(l, q2)];
     let q1 = align(h1, moved, [g, m])?;
+    // Near roots that are no solutions, or of many that fall together, the loop does not close.
+    let [at, along] = moved.map(|v| lines[0].turned(v, q1));
+    let (gap, lean) = (minus(at, g), minus(along, m));
+    let size = dot(g, g) + dot(p, p) + dot(step, step);
+    if !(dot(gap, gap) <= OPEN * OPEN * size && dot(lean, lean) <= OPEN * OPEN) {
+        return None;
+    }
     // A vector that is not along the last axis shows how far that has turned.
     let h6 = lines[5].direction;
     let side = if h6[0].abs() < 0.8 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
@@ -202,8 +222,13 @@ fn align(axis: Vector, from: [Vector; 2], to: [Vector; 2]) -> Option<[f64; 2]> {
 pub fn six(lines: &[Line; 6], goal: &Motion, orders: &[Order], slack: f64) -> Candidates {
     let mut found = Candidates::NONE;
     let goal = if slack > 0.0 { nudged(goal, 0.1 * slack) } else { *goal };
-    for order in orders {
-        if solve(lines, &goal, *order, slack, &mut found) && slack == 0.0 {
+    for (i, order) in orders.iter().enumerate() {
+        if solve(lines, &goal, *order, slack, MOST_VIEWS, &mut found) && slack == 0.0 {
+            break;
+        }
+        // Solutions that share the angle here do not at a goal nearby.
+        let near = nudged(&goal, BESIDE);
+        if i == 0 && slack == 0.0 && solve(lines, &near, *order, slack, 1, &mut found) {
             break;
         }
     }
@@ -221,21 +246,110 @@ pub fn nudged(goal: &Motion, size: f64) -> Motion {
 }
 
 /// Adds the candidates of one order; says whether they are all that there are.
-fn solve(lines: &[Line; 6], goal: &Motion, order: Order, slack: f64, found: &mut Candidates) -> bool {
+fn solve(
+    lines: &[Line; 6],
+    goal: &Motion,
+    order: Order,
+    slack: f64,
+    most: usize,
+    found: &mut Candidates,
+) -> bool {
     let loop_ = arrange(lines, goal, order.code);
     let six = eliminate(&loop_.lines, &loop_.goal, loop_.swapped);
-    let mut view = View::WHOLE;
+    // Views that are left to look at, those of wide places before those within them.
+    let (mut views, mut next, mut end) = ([View::WHOLE; MOST_VIEWS], 0, 1);
     let mut all = true;
     let before = found.len;
-    for _ in 0..MOST_VIEWS {
-        let (apart, flat) = look(&loop_, &six, order, &view, slack, found);
+    while next < end {
+        let view = views[next];
+        next += 1;
+        let (apart, flats) = look(&loop_, &six, order, &view, slack, most - end, found);
         all &= apart;
-        match flat {
-            Some((u, width)) => view = view.zoomed(u, width),
-            None => return all && found.len > before,
+        for (u, width) in &flats.places[..flats.count] {
+            views[end] = view.zoomed(*u, *width);
+            end += 1;
         }
     }
-    false
+    all && found.len > before
+}
+
+/// Places where a polynomial is all but zero, and how widely.
+struct Flats {
+    places: [(f64, f64); MOST_VIEWS],
+    count: usize,
+    /// For each root, whether it is at one of them.
+    holds: [bool; MAX_SIZE],
+    /// Whether there are more.
+    more: bool,
+}
+
+impl Flats {
+    /// So many of them, flattest first, as wide as the roots reach that rounding has moved.
+    fn new(
+        six: &Six,
+        order: Order,
+        view: &View,
+        waves: &Waves,
+        roots: &[Root],
+        turns: &[[f64; 2]; MAX_SIZE],
+        most: usize,
+    ) -> Flats {
+        let mut rises = [f64::MAX; MAX_SIZE];
+        for (i, root) in roots.iter().enumerate() {
+            let Root { angle, imaginary } = *root;
+            if view.is_beside(turns[i])
+                || imaginary.abs() >= 1.0
+                || order.squared && imaginary.abs() < NEARLY_REAL
+            {
+                continue;
+            }
+            let rise = waves.rise(angle, NEARLY_REAL);
+            let mut low = rise < FLAT * waves.largest;
+            if !low && rise < FAINT * waves.largest {
+                let miss = view.value(six, order.degree, angle) - waves.at(angle)[0];
+                low = miss.abs() > OFF * rise;
+            }
+            if low {
+                rises[i] = rise;
+            }
+        }
+        let mut flats =
+            Flats { places: [(0.0, 1.0); MOST_VIEWS], count: 0, holds: [false; MAX_SIZE], more: false };
+        loop {
+            let (mut least, mut at) = (f64::MAX, 0);
+            for (i, rise) in rises.iter().enumerate() {
+                if *rise < least {
+                    (least, at) = (*rise, i);
+                }
+            }
+            if least == f64::MAX {
+                return flats;
+            }
+            if flats.count == most {
+                flats.more = true;
+                return flats;
+            }
+            let mut width = 1e-3;
+            for (i, root) in roots.iter().enumerate() {
+                let [c, s] = between(turns[at], turns[i]);
+                let gap = s.abs() + root.imaginary.abs();
+                if rises[i] < f64::MAX && c > 0.0 && gap < 0.5 {
+                    width = if gap > width { gap } else { width };
+                    rises[i] = f64::MAX;
+                    flats.holds[i] = true;
+                }
+            }
+            rises[at] = f64::MAX;
+            flats.holds[at] = true;
+            flats.places[flats.count] = (roots[at].angle, width);
+            flats.count += 1;
+        }
+    }
+}
+
+/// The turn from one to another.
+fn between([a, b]: [f64; 2], [c, s]: [f64; 2]) -> [f64; 2] {
+    [a * c + b * s, a * s - b * c]
 }
 
 /// Adds the candidates that show in one view; says whether their roots lie apart, and where the polynomial is all but zero,
@@ -246,16 +360,18 @@ fn look(
     order: Order,
     view: &View,
     slack: f64,
+    most: usize,
     found: &mut Candidates,
-) -> (bool, Option<(f64, f64)>) {
+) -> (bool, Flats) {
     let waves = Waves::new(&view.samples(six, order.degree), order.degree);
     let mut roots = [Root { angle: 0.0, imaginary: 0.0 }; MAX_SIZE];
     let count = waves.roots(order.squared, &mut roots);
     let multiplicity = if order.squared { 2 } else { 1 };
+    let turns = roots.map(|root| cos_sin(root.angle));
     let mut apart = count * multiplicity == 2 * order.degree;
+    let flats = Flats::new(six, order, view, &waves, &roots[..count], &turns, most);
     let mut done = [false; MAX_SIZE];
-    let mut flat: Option<f64> = None;
-    let mut least = FLAT * waves.largest;
+    apart &= !flats.more;
     let mut add = |turn, [tangent, other]: Pair| {
         let middle = if loop_.swapped { [turn, other, tangent] } else { [turn, tangent, other] };
         if let Some([q1, q2, q6]) = close(loop_, middle) {
@@ -268,19 +384,13 @@ fn look(
     };
     for i in 0..count {
         let Root { angle, imaginary } = roots[i];
-        if imaginary.abs() < 1.0 && !(order.squared && imaginary.abs() < NEARLY_REAL) {
-            let rise = waves.rise(angle, NEARLY_REAL);
-            if rise < least {
-                (flat, least) = (Some(angle), rise);
-            }
-        }
-        if done[i] || imaginary.abs() > NEARLY_REAL + 5.0 * sqrt(slack) {
+        if done[i] || view.is_beside(turns[i]) || imaginary.abs() > NEARLY_REAL + 5.0 * sqrt(slack) {
             continue;
         }
         let (mut together, mut shift, mut spread) = (0, 0.0, 0.0f64);
         let mut near = [false; MAX_SIZE];
         for (j, other) in roots[..count].iter().enumerate() {
-            let [c, s] = cos_sin(other.angle - angle);
+            let [c, s] = between(turns[i], turns[j]);
             let gap = s.abs() + (other.imaginary - imaginary).abs();
             near[j] = c > 0.0 && gap < APART;
             if near[j] {
@@ -289,10 +399,23 @@ fn look(
                 shift += s;
             }
         }
-        // Where null vectors of dimension one are looked for.
-        let (mut starts, mut many) = ([angle; MAX_SIZE], 0);
         // Roots that nearly fall together: their mean is more exact than each of them.
         let mean = angle + shift * multiplicity as f64 / together as f64;
+        if flats.holds[i] {
+            // The rest shows in the view of the place.
+            for j in 0..count {
+                done[j] |= near[j] && flats.holds[j];
+            }
+            let (turn, _) = view.turn(mean);
+            if several(six, turn, |pair| add(turn, pair)) < 2
+                && let Some(pair) = single(six, turn)
+            {
+                add(turn, pair);
+            }
+            continue;
+        }
+        // Where null vectors of dimension one are looked for.
+        let (mut starts, mut many) = ([angle; MAX_SIZE], 0);
         let [extremum, value, bend] = waves.extremum(mean);
         let fold = together == 2 && !order.squared && slack == 0.0;
         // The determinant itself tells how far its waves are off.
@@ -332,20 +455,7 @@ fn look(
             }
         }
     }
-    // As wide as the roots reach that rounding has moved.
-    let flat = flat.map(|angle| {
-        let mut width = 1e-3;
-        for root in &roots[..count] {
-            let [c, s] = cos_sin(root.angle - angle);
-            let gap = s.abs() + root.imaginary.abs();
-            let low = waves.rise(root.angle, NEARLY_REAL) < FLAT * waves.largest;
-            if c > 0.0 && gap < 0.5 && gap > width && low {
-                width = gap;
-            }
-        }
-        (angle, width)
-    });
-    (apart, flat)
+    (apart, flats)
 }
 
 /// The determinant of an order, from which the compiler learns its degree.

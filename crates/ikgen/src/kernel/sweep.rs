@@ -51,6 +51,9 @@ const ROUNDING: f64 = 0.1;
 /// lost in rounding.
 const EVEN: f64 = 1e-3;
 
+/// Shortest interval for that reason, as part of all values: nearer to a place where many roots are it never ends.
+const FINE: f64 = 1.0 / 512.0;
+
 /// Roots that are nearer to each other than this part of half an interval, three or more, are looked at alone. Where the five others lose
 /// a freedom at some value, whatever the goal, the determinant has a root of a high order there, which hides others beside it.
 const CLUSTER: f64 = 0.05;
@@ -172,7 +175,8 @@ fn walk(ordered: &Ordered<'_>, table: &Cosines, span: [f64; 2], mut visit: impl 
         let piece = Piece::new(table, at, width, |x| ordered.value(x));
         let rest = piece.rest();
         let resolved = rest < RESOLVED * piece.largest;
-        if (piece.even < EVEN || !resolved && rest < ROUNDING * before) && width > SHORTEST * whole {
+        let uneven = piece.even < EVEN && width > FINE * whole;
+        if uneven || !resolved && rest < ROUNDING * before && width > SHORTEST * whole {
             before = rest;
             width *= 0.5;
             continue;
