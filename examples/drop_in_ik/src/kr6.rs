@@ -365,15 +365,10 @@ pub fn sqrt(x: f64) -> f64 {
 mod math {
 
 //! Sine, cosine and arc tangent from additions, products and quotients alone.
-//!
-//! Each is within one unit in the last place of the exact value, and gives the same bits on every platform.
 
 pub use super::sqrt::sqrt;
 
 /// Cosine and sine of an angle in radians, `[cos, sin]`, for angles of up to a million quarter turns.
-///
-/// Reduction by a three-part pi/2 to [-pi/4, pi/4] and a remainder below the last place, then Taylor polynomials whose
-/// truncation is below 1e-18.
 pub fn cos_sin(angle: f64) -> [f64; 2] {
 	// The first two parts have 33 bits: their products with the number of quarters are exact.
 	const PI_2_A: f64 = 1.570_796_326_734_125_6;
@@ -412,8 +407,6 @@ pub fn cos_sin(angle: f64) -> [f64; 2] {
 }
 
 /// Angle with this sine and cosine in (-pi, pi], within two places; faster than [`atan2`] as the point is on the unit circle.
-///
-/// Folded to the first octant and turned back by the nearest of the angles with sine `k/16`; what is left is a small sine.
 pub fn angle_of(sine: f64, cosine: f64) -> f64 {
 	use core::f64::consts::{FRAC_PI_2, PI};
 	/// Cosine and angle.
@@ -558,8 +551,6 @@ impl<const N: usize> Tries<N> {
 }
 
 /// The angle whose cosine and sine are proportional to `x` and `y`.
-///
-/// These are products of two vectors that vanish together where the angle is free: up to there they tell it, however small they are.
 pub fn align(x: f64, y: f64, slack: f64) -> Roots<1> {
 	let n = sqrt(x * x + y * y);
 	if !(x.abs() + y.abs() < f64::INFINITY) {
@@ -596,9 +587,6 @@ fn apart(sine: f64, slack: f64) -> f64 {
 }
 
 /// The angles with `a cos + b sin = d`.
-///
-/// When the line misses the unit circle by no more than [`EDGE`] and `slack` the nearest angle is given: such poses are at the
-/// edge of what the arm can do, and the check of solutions decides.
 pub fn circle(a: f64, b: f64, d: f64, slack: f64) -> Roots<2> {
 	let n = sqrt(a * a + b * b);
 	if !(a.abs() + b.abs() < f64::INFINITY) {
@@ -724,14 +712,6 @@ pub fn forward(links: &[Link], last_from_tip: &Frame, steps: &[[f64; 2]]) -> Fra
 }
 
 /// Brings `values` onto the pose by Newton steps on the true chain; the variables marked in `held` stay.
-///
-/// The steps are damped by the square of the distance that is left (Yamashita and Fukushima, "On the rate of convergence of the
-/// Levenberg-Marquardt method", 2001). Where the ideal chain could move and keep the pose, the true one nearly can: a solution may lie
-/// far along that way, and what a long step spoils has to be mended before the next one.
-///
-/// Returns the distance that is left, the smallest met. Steps may go uphill: where two solutions fall together Newton's method
-/// halves its distance to them from far out, but may first have to get there. They end when they lead nowhere: the
-/// distance has not fallen to a half within [`PATIENCE`] of them.
 pub fn polish(
 	links: &[Link],
 	last_from_tip: &Frame,
@@ -828,9 +808,6 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 /// The step `x` of the variables that makes `|columns x - error|^2 + damping |x|^2` least; held ones stay.
-///
-/// By reflections of the columns with the damping below them: where axes nearly line up the products of the normal equations would lose
-/// the digits that tell which way to go.
 fn damped(
 	columns: &[[f64; 6]; MAX_JOINTS],
 	error: &[f64; 6],
@@ -953,8 +930,6 @@ impl Arm<'_> {
 	}
 
 	/// Turns a candidate into variable values that reach the pose; says whether they do.
-	///
-	/// `values` holds the given ones on entry.
 	pub fn settle(&self, base_from_tip: &Frame, steps: &[[f64; 2]], values: &mut [f64]) -> bool {
 		let distance = self.forward_steps(steps).distance(base_from_tip);
 		if !(distance < f64::INFINITY) {
@@ -1015,8 +990,6 @@ fn principal(angle: f64) -> f64 {
 mod family {
 
 //! Continua of solutions at singular poses: directions in which joints move and the tip does not.
-//!
-//! A stretched arm has lost rank too, and cannot move: a family is what stays on the pose when it is followed.
 
 use super::candidate::Arm;
 use super::chain::{Frame, MAX_JOINTS, TOLERANCE, linearise, polish};
