@@ -7,7 +7,7 @@ from pathlib import Path
 import robotc
 
 # Shapes of dictionaries and names of types, for type checkers alone.
-TYPES_ONLY = {"Array", "Path", "Diagnostic", "Artefact", "Segment", "Step", "Contact"}
+TYPES_ONLY = {"Array", "Path", "Diagnostic", "Artefact", "Segment", "Step", "Contact", "Choice"}
 
 
 def stub():
