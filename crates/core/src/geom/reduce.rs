@@ -113,21 +113,27 @@ fn contraction(
 ) -> Option<Contraction> {
     let [a, b] = edge.map(|v| hull.points[v as usize]);
     let middle = nalgebra::center(&a, &b);
-    let around = |corners: &[u32]| {
-        let mut found: Vec<usize> = corners.iter().flat_map(|&v| &around[v as usize]).copied().collect();
-        found.sort_unstable();
-        found.dedup();
-        found
-    };
-    let beside = around(&edge);
+    let mut beside: Vec<usize> = edge.iter().flat_map(|&v| &around[v as usize]).copied().collect();
+    beside.sort_unstable();
+    beside.dedup();
     // Heights are counted from the middle of the edge, where they are small.
     let plane = |f: &Facet| (f.normal, f.offset - f.normal.dot(&middle.coords));
     let planes: Vec<(Vector3<f64>, f64)> = beside.iter().map(|&f| plane(&facets[f])).collect();
     let growth = beside.iter().map(|&f| facets[f].normal * facets[f].area).sum();
     let corner = middle + lowest_above(&planes, &growth, FAR * size, SLACK * size)?;
-    let ring: Vec<u32> = beside.iter().flat_map(|&f| facets[f].corners).collect();
-    let added = |f: &Facet| (f.normal.dot(&corner.coords) - f.offset).max(0.0) * f.area / 3.0;
-    let volume: f64 = around(&ring).into_iter().map(|f| added(&facets[f])).sum();
+    let mut ring: Vec<u32> = beside.iter().flat_map(|&f| facets[f].corners).collect();
+    ring.sort_unstable();
+    ring.dedup();
+    let added = |f: &usize| {
+        let f = &facets[*f];
+        (f.normal.dot(&corner.coords) - f.offset).max(0.0) * f.area / 3.0
+    };
+    // Few faces are below the corner; each counts once, in the order of their numbers.
+    let all = ring.iter().flat_map(|&v| &around[v as usize]).copied();
+    let mut below: Vec<usize> = all.filter(|f| added(f) > 0.0).collect();
+    below.sort_unstable();
+    below.dedup();
+    let volume: f64 = below.iter().map(added).sum();
     let way = (corner - a).norm().min((corner - b).norm()).min((corner - middle).norm());
     Some(Contraction { edge, corner, cost: volume + way.powi(3) })
 }
