@@ -10,6 +10,9 @@ use crate::ir::{Binary, Block, Expr, Exprs, Program, RootKind, Stmt, Unary};
 /// the difference of the chains.
 const REACH: f64 = 16.0;
 
+/// The same for equations behind others, times the slopes of these.
+const BEHIND: f64 = 1.0;
+
 /// In a program that ends in the general solver, notes a doubt before each equation of the ideal chain that may lack roots.
 pub(super) fn note_doubts(program: &mut Program) {
     let reach = REACH * program.slack;
@@ -27,8 +30,11 @@ fn note(block: &mut Block, exprs: &mut Exprs, reach: f64, before: Option<Expr>) 
             Stmt::ForEach { kind, args, body, .. } => {
                 let mut within = before;
                 if let Some((value, tolerance)) = edge(*kind, args, exprs, reach) {
-                    let sure = before.map_or(value, |before| exprs.binary(Binary::Mul, before, value));
-                    noted.push(Stmt::Doubt { value: sure, tolerance });
+                    noted.push(Stmt::Doubt { value, tolerance });
+                    if let Some(before) = before {
+                        let value = exprs.binary(Binary::Mul, before, value);
+                        noted.push(Stmt::Doubt { value, tolerance: tolerance / REACH * BEHIND });
+                    }
                     let slope = slope(value, exprs);
                     within = Some(before.map_or(slope, |before| exprs.binary(Binary::Mul, before, slope)));
                 }

@@ -13,40 +13,41 @@ slack 4e-5
   let t3 = sqrt(t2)
   let t4 = 1e-5 - t3
   doubt(t4, 0.00064)
-  let t5 = min(1.0, sqrt(max(t4, t3 - 1e-5)))
-  let t6 = pz + (-1e-5 * r21 + -0.08 * r22)
-  let t7 = t6 - 0.4
-  let t8 = -0.0147 + -0.5 * (0.000625 + (t2 + t7 * t7))
-  let t9 = t0 * 0.025
-  let t10 = t1 * 0.025
-  let t11 = 0.4 - t6
-  let t12 = -0.455 * t11
-  let t13 = t12 * t12
+  let t5 = pz + (-1e-5 * r21 + -0.08 * r22)
+  let t6 = t5 - 0.4
+  let t7 = -0.0147 + -0.5 * (0.000625 + (t2 + t6 * t6))
+  let t8 = t0 * 0.025
+  let t9 = t1 * 0.025
+  let t10 = 0.4 - t5
+  let t11 = -0.455 * t10
+  let t12 = t11 * t11
+  let t13 = min(1.0, sqrt(max(t4, t3 - 1e-5)))
   circle(-t1, -t0, -1e-5) -> c1 s1 {
-    let t16 = t8 + c1 * t9
-    let t17 = s1 * t10
+    let t16 = t7 + c1 * t8
+    let t17 = s1 * t9
     let t18 = t16 - t17
     let t19 = max(t18, t17 - t16)
     let t20 = -0.025 + t0 * c1 - t1 * s1
     let t21 = -0.455 * t20
-    let t22 = sqrt(t21 * t21 + t13)
+    let t22 = sqrt(t21 * t21 + t12)
     let t23 = t19 - t22
-    doubt(t5 * t23, 0.00064)
+    doubt(t23, 0.00064)
+    doubt(t23 * t13, 4e-5)
     let t24 = r12 * s1
     let t25 = r02 * c1
     let t26 = t24 - t25
     let t27 = t25 - t24
     let t28 = r12 * c1 + r02 * s1
     let t29 = t28 * t28
-    let t30 = t5 * min(1.0, sqrt(max(t23, t22 - t19)))
+    let t30 = t13 * min(1.0, sqrt(max(t23, t22 - t19)))
     let t31 = r11 * c1 + r01 * s1
     let t32 = r11 * s1
     let t33 = r01 * c1
     let t34 = t32 - t33
     let t35 = t33 - t32
-    circle(t21, t12, t18) -> c2 s2 {
-      let t38 = -0.455 + (t20 * c2 + t11 * s2)
-      let t39 = t7 * c2 + t20 * s2
+    circle(t21, t11, t18) -> c2 s2 {
+      let t38 = -0.455 + (t20 * c2 + t10 * s2)
+      let t39 = t6 * c2 + t20 * s2
       let t40 = r22 * s2 + c2 * t26
       let t41 = r22 * c2 + s2 * t27
       let t42 = r21 * c2 - s2 * t34
@@ -59,13 +60,15 @@ slack 4e-5
         # the angle between the first and the last axis of the wrist
         let t49 = s3 * t40 - c3 * t41
         let t50 = sqrt(t49 * t49 + t29)
-        doubt(t50 * t50 * t30, 0.00128)
-        let t51 = c3 * t42 - s3 * t45
-        let t52 = s3 * t42 - c3 * t46
+        let t51 = t50 * t50
+        doubt(t51, 0.00128)
+        doubt(t51 * t30, 8e-5)
+        let t52 = c3 * t42 - s3 * t45
+        let t53 = s3 * t42 - c3 * t46
         half(-(t40 * c3 + s3 * t41), t50) -> c5 s5 {
-          let t55 = s5 * t52
+          let t56 = s5 * t53
           align(t49 * s5, -(t28 * s5)) -> c4 s4 {
-            align(c4 * t31 - s4 * t51, t55 - c5 * (c4 * t51 + t31 * s4)) -> c6 s6 {
+            align(c4 * t31 - s4 * t52, t56 - c5 * (c4 * t52 + t31 * s4)) -> c6 s6 {
               emit angle(c1, s1) angle(c2, s2) angle(c3, s3) angle(c4, s4) angle(c5, s5) angle(c6, s6)
               zero(s5, 1e-11) {
               } else {
