@@ -1197,8 +1197,8 @@ static double ik_rise(const ik_waves *waves, double angle)
     return ik_abs(bends[0]) + IK_NEARLY_REAL * (ik_abs(bends[1]) + 0.5 * IK_NEARLY_REAL * ik_abs(bends[2]));
 }
 
-/* Most views of the polynomial of one order: the whole circle, and places where it is flat. */
-#define IK_VIEWS 4
+/* Most views of the polynomial of the first order: the whole circle, and places where it is flat. Others are asked for the whole. */
+#define IK_VIEWS 3
 
 /* Whether a turn is far from the centre of a narrow view: what is there shows better in the view before. */
 static int ik_beside(const ik_view *view, ik_turn turn)
@@ -1280,7 +1280,8 @@ static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int 
     ik_turn turn, turns[IK_SIZE], pairs[6][2];
     for (i = 0; i < count; i++) turns[i] = ik_turn_by(roots[i].angle);
     flats = ik_flats(six, degree, squared, view, &waves, roots, turns, count, most - *count_views, places, holds, &more);
-    if (more) apart = 0;
+    /* A determinant that is smaller than that everywhere is rounding alone: at some poses an order breaks down. */
+    if (more || (view->width >= 1.0 && !(waves.largest > 1e-22))) apart = 0;
     for (i = 0; i < count; i++) {
         double angle = roots[i].angle, imaginary = roots[i].imaginary;
         if (done[i] || ik_beside(view, turns[i]) || ik_abs(imaginary) > IK_NEARLY_REAL + 5.0 * ik_sqrt(slack)) continue;
@@ -1385,7 +1386,7 @@ static void ik_six(const double numbers[57], double slack, ik_candidates *found)
     if (slack > 0.0) goal = ik_nudged(&goal, 0.1 * slack);
     for (i = 48; i < 57; i += 3) {
         if (!(numbers[i + 1] > 0.0)) continue;
-        if (ik_solve_order(lines, &goal, &numbers[i], slack, IK_VIEWS, found) && !(slack > 0.0)) break;
+        if (ik_solve_order(lines, &goal, &numbers[i], slack, first ? IK_VIEWS : 1, found) && !(slack > 0.0)) break;
         /* Solutions that share the angle here do not at a goal nearby. */
         near = ik_nudged(&goal, 1e-2);
         if (first && !(slack > 0.0) && ik_solve_order(lines, &near, &numbers[i], slack, 1, found)) break;

@@ -95,11 +95,14 @@ const FAINT: f64 = 1e-7;
 /// The polynomial is off where it misses the determinant by this part of what it rises to nearby.
 const OFF: f64 = 0.1;
 
+/// A determinant that is smaller everywhere is rounding alone: at some poses an order breaks down.
+const BROKEN: f64 = 1e-22;
+
 /// Rounding of the polynomial, as part of the largest sample, where it is small.
 const ROUNDING: f64 = 1e-14;
 
-/// Most views of the polynomial of one order: the whole circle, and places where it is flat.
-const MOST_VIEWS: usize = 4;
+/// Most views of the polynomial of the first order: the whole circle, and places where it is flat. Others are asked for the whole.
+const MOST_VIEWS: usize = 3;
 
 /// Roots that are nearer to each other may be one.
 pub const APART: f64 = 3e-3;
@@ -223,7 +226,8 @@ pub fn six(lines: &[Line; 6], goal: &Motion, orders: &[Order], slack: f64) -> Ca
     let mut found = Candidates::NONE;
     let goal = if slack > 0.0 { nudged(goal, 0.1 * slack) } else { *goal };
     for (i, order) in orders.iter().enumerate() {
-        if solve(lines, &goal, *order, slack, MOST_VIEWS, &mut found) && slack == 0.0 {
+        let most = if i == 0 { MOST_VIEWS } else { 1 };
+        if solve(lines, &goal, *order, slack, most, &mut found) && slack == 0.0 {
             break;
         }
         // Solutions that share the angle here do not at a goal nearby.
@@ -371,7 +375,7 @@ fn look(
     let mut apart = count * multiplicity == 2 * order.degree;
     let flats = Flats::new(six, order, view, &waves, &roots[..count], &turns, most);
     let mut done = [false; MAX_SIZE];
-    apart &= !flats.more;
+    apart &= !flats.more && (view.width < 1.0 || waves.largest > BROKEN);
     let mut add = |turn, [tangent, other]: Pair| {
         let middle = if loop_.swapped { [turn, other, tangent] } else { [turn, tangent, other] };
         if let Some([q1, q2, q6]) = close(loop_, middle) {
