@@ -31,23 +31,14 @@ pub enum NpyError {
 
 /// An array whose data is as long as its shape says.
 #[derive(Debug)]
-pub struct Array<'b> {
-    /// Sizes of its dimensions, eight at most; none for a value alone.
-    pub shape: Vec<usize>,
-    /// What it holds.
-    pub values: Values<'b>,
-}
-
-/// What an array holds.
-#[derive(Debug)]
-pub enum Values<'b> {
+pub enum Array<'b> {
     /// Numbers.
     Numbers(Numbers<'b>),
     /// Texts, in the order in which they stand in the file.
     Texts(Vec<String>),
 }
 
-/// The numbers of an array.
+/// An array of numbers.
 #[derive(Debug)]
 pub struct Numbers<'b> {
     number: Number,
@@ -59,8 +50,13 @@ pub struct Numbers<'b> {
 }
 
 impl Numbers<'_> {
+    /// Sizes of the dimensions, eight at most; none for a number alone.
+    pub fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+
     /// The number at an index, which is within the shape.
-    pub fn at(&self, index: &[usize]) -> f64 {
+    fn at(&self, index: &[usize]) -> f64 {
         let step = |sum: usize, (i, n): (&usize, &usize)| sum * n + i;
         let each = index.iter().zip(&self.shape);
         let flat = if self.columns_first { each.rev().fold(0, step) } else { each.fold(0, step) };
@@ -108,13 +104,10 @@ pub fn read(bytes: &[u8]) -> Result<Array<'_>, NpyError> {
     let Some(data) = size.and_then(|size| data.get(..size)) else {
         return Err(NpyError::DataEndsEarly(shape));
     };
-    let values = match kind {
-        Kind::Number(number) => {
-            Values::Numbers(Numbers { number, big_endian, columns_first, shape: shape.clone(), data })
-        }
-        Kind::Text(_) => Values::Texts(data.chunks_exact(kind.size()).map(|b| text(b, big_endian)).collect()),
-    };
-    Ok(Array { shape, values })
+    Ok(match kind {
+        Kind::Number(number) => Array::Numbers(Numbers { number, big_endian, columns_first, shape, data }),
+        Kind::Text(_) => Array::Texts(data.chunks_exact(kind.size()).map(|b| text(b, big_endian)).collect()),
+    })
 }
 
 /// A type of values.

@@ -80,8 +80,9 @@ pub fn grid(bytes: &[u8]) -> Result<Grid, ScanError> {
     let grid = match bytes {
         _ if image::is_png(bytes) => image::read(bytes)?,
         _ if npy::is_npy(bytes) => {
-            let (shape, numbers) = numbers_of_array(bytes)?;
-            let &[rows, columns] = shape.as_slice() else {
+            let numbers = numbers_of_array(bytes)?;
+            let shape = numbers.shape();
+            let &[rows, columns] = shape else {
                 return Err(ScanError::Malformed(format!(
                     "an array of shape {shape:?} is no grid; it needs two dimensions"
                 )));
@@ -99,36 +100,25 @@ pub fn grid(bytes: &[u8]) -> Result<Grid, ScanError> {
     }
 }
 
-/// An array of numbers, with its shape.
-fn numbers_of_array(bytes: &[u8]) -> Result<(Vec<usize>, npy::Numbers<'_>), ScanError> {
-    let array = npy::read(bytes).map_err(|wrong| ScanError::Malformed(wrong.to_string()))?;
-    match array.values {
-        npy::Values::Numbers(numbers) => Ok((array.shape, numbers)),
-        npy::Values::Texts(_) => Err(ScanError::Malformed("holds texts, not numbers".into())),
+fn numbers_of_array(bytes: &[u8]) -> Result<npy::Numbers<'_>, ScanError> {
+    match npy::read(bytes).map_err(|wrong| ScanError::Malformed(wrong.to_string()))? {
+        npy::Array::Numbers(numbers) => Ok(numbers),
+        npy::Array::Texts(_) => Err(ScanError::Malformed("holds texts, not numbers".into())),
     }
 }
 
 /// The first three numbers along the last dimension of an array.
 fn points_of_array(bytes: &[u8]) -> Result<Vec<[f64; 3]>, ScanError> {
-    let (shape, numbers) = numbers_of_array(bytes)?;
-    let Some((_, rows)) = shape.split_last().filter(|(width, rows)| **width >= 3 && !rows.is_empty()) else {
+    let numbers = numbers_of_array(bytes)?;
+    let shape = numbers.shape();
+    let Some((&width, rows)) = shape.split_last().filter(|(width, rows)| **width >= 3 && !rows.is_empty())
+    else {
         return Err(ScanError::Malformed(format!(
             "an array of shape {shape:?} is no list of points; it needs three columns"
         )));
     };
-    let count: usize = rows.iter().product();
-    bounded(count)?;
-    let mut index = vec![0; shape.len()];
-    let point = |mut i: usize| {
-        for (k, &n) in rows.iter().enumerate().rev() {
-            (index[k], i) = (i % n, i / n);
-        }
-        [0, 1, 2].map(|k| {
-            index[rows.len()] = k;
-            numbers.at(&index)
-        })
-    };
-    Ok((0..count).map(point).collect())
+    bounded(rows.iter().product())?;
+    Ok(numbers.in_rows().chunks_exact(width).map(|row| [row[0], row[1], row[2]]).collect())
 }
 
 /// Refuses more points than a cloud may have.

@@ -135,10 +135,11 @@ fn to_npy(array: &Array) -> Vec<u8> {
 
 /// The array of an NPY file.
 fn of_npy(bytes: &[u8]) -> Result<Array, NpyError> {
-    let array = npy::read(bytes)?;
-    Ok(match array.values {
-        npy::Values::Numbers(numbers) => Array::Numbers { values: numbers.in_rows(), shape: array.shape },
-        npy::Values::Texts(texts) => Array::Texts(texts),
+    Ok(match npy::read(bytes)? {
+        npy::Array::Numbers(numbers) => {
+            Array::Numbers { shape: numbers.shape().to_vec(), values: numbers.in_rows() }
+        }
+        npy::Array::Texts(texts) => Array::Texts(texts),
     })
 }
 
