@@ -16,7 +16,6 @@ use super::rejections::Rejections;
 use super::sequence::{Observer, Reached};
 use crate::budget::Budget;
 use crate::constraint::Constraint;
-use crate::goal::{GoalDraw, GoalSampler};
 use crate::grasp::Grasp;
 use crate::placement::{BasePlacement, PlacementArm};
 use crate::scene::Scene;
@@ -131,18 +130,14 @@ fn carry_off(
     let mut last = GoalFailure::new(cx.object_name(), Stage::Carry);
     last.message = "no place to stand was found".into();
     for tried in 0..PLACES {
-        let base = loop {
-            match places.draw(budget) {
-                Ok(GoalDraw::Pending) => {}
-                Ok(GoalDraw::Goal(_)) => break places.placements.last().map(|placement| placement.base),
-                Ok(GoalDraw::Exhausted) => break None,
-                Err(interrupt) => {
-                    last.interrupt = Some(interrupt);
-                    return Err(last);
-                }
+        let base = match places.next_base(budget) {
+            Ok(Some(base)) => base,
+            Ok(None) => break,
+            Err(interrupt) => {
+                last.interrupt = Some(interrupt);
+                return Err(last);
             }
         };
-        let Some(base) = base else { break };
         let (seed, rules) = (seed.split("place").at(tried), cx.free(Some(grip.clone())));
         let Some(path) = drive_to(cx, scene, drive, &folded, &base, rules, budget, seed) else {
             last.message = "no way to drive to where it can be put down from".into();

@@ -13,7 +13,7 @@ use super::plan::{GoalFailure, SegmentKind, Stage};
 use super::problem::{GoalContext, Manipulation, motion_limits};
 use super::sequence::Reached;
 use crate::budget::Budget;
-use crate::goal::{FixedGoals, GoalDraw, GoalSampler};
+use crate::goal::FixedGoals;
 use crate::placement::{BasePlacement, PlacementArm, PlacementOptions, Prism};
 use crate::rrt::RrtConnect;
 use crate::scene::{RobotChecker, Rules, Scene};
@@ -116,16 +116,15 @@ pub(super) fn plan_driving(
                 if stage > 0 || tried == PLACES {
                     break;
                 }
-                match places.draw(budget) {
+                let base = match places.next_base(budget) {
+                    Ok(Some(base)) => base,
+                    Ok(None) => break,
                     Err(interrupt) => {
                         last.interrupt = Some(interrupt);
                         return Err(last);
                     }
-                    Ok(GoalDraw::Pending) => continue,
-                    Ok(GoalDraw::Exhausted) => break,
-                    Ok(GoalDraw::Goal(_)) => tried += 1,
-                }
-                let Some(base) = places.placements.last().map(|placement| placement.base) else { break };
+                };
+                tried += 1;
                 let seed = seed.split("place").at(tried);
                 let rules = cx.free(None);
                 let Some(path) = drive_to(cx, scene, &drive, &folded, &base, rules, budget, seed) else {

@@ -200,6 +200,17 @@ impl<'a, P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> BasePlaceme
         None
     }
 
+    /// Draws until there is another place to stand: x, y and heading of the base. `None` when no more are drawn.
+    pub fn next_base(&mut self, budget: &Budget<'_>) -> Result<Option<[f64; 3]>, Interrupt> {
+        loop {
+            match self.draw(budget)? {
+                GoalDraw::Pending => {}
+                GoalDraw::Goal(_) => return Ok(self.placements.last().map(|placement| placement.base)),
+                GoalDraw::Exhausted => return Ok(None),
+            }
+        }
+    }
+
     fn reject(&mut self, by: Obstruction) {
         *self.rejections.blocked.entry(by).or_insert(0) += 1;
     }
