@@ -119,6 +119,26 @@ impl InverseKinematics {
         Ok(found.map(|joints| PyArray1::from_vec(py, joints)))
     }
 
+    /// The joint vectors that come nearest to the pose: rows, errors in metres and radians, and whether each is a solution.
+    #[pyo3(
+        signature = (pose, free = Vec::new(), *, limits = WantedLimits::Described(true), near = None, max_solutions = None, radian = None),
+        text_signature = "(self, pose, free=(), *, limits=True, near=None, max_solutions=None, radian=0.2)"
+    )]
+    #[allow(clippy::too_many_arguments, reason = "they are keywords")]
+    fn closest<'py>(
+        &self,
+        py: Python<'py>,
+        pose: PyReadonlyArray2<'py, f64>,
+        free: Vec<f64>,
+        limits: WantedLimits,
+        near: Option<Vec<f64>>,
+        max_solutions: Option<usize>,
+        radian: Option<f64>,
+    ) -> PyResult<solving::ClosestRows<'py>> {
+        let wanted = Wanted { near, max_solutions, ..Wanted::within(limits) };
+        solving::closest(py, &self.solver, &self.free_joints, &pose, &free, wanted, radian)
+    }
+
     /// Branches of an arm with spherical shoulder and wrist and the swivel angles at which they keep the limits.
     #[pyo3(signature = (pose, limits = WantedLimits::Described(true)), text_signature = "(self, pose, limits=True)")]
     fn swivel<'py>(

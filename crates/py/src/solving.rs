@@ -1,12 +1,12 @@
 //! What every solver object does: solutions of a pose, and the pose of a solution.
 
-use numpy::{PyArray2, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use robotc_core::SerialChain;
 use robotc_core::ik::{Aliases, IkSolutions, InverseKinematics as _, Limits, Preferences};
 use robotc_ikgen::Solver;
-use robotc_ikgen::run::{RedundancyOptions, Side, SwivelBranch};
+use robotc_ikgen::run::{ClosestOptions, RedundancyOptions, Side, SwivelBranch};
 
 use crate::arrays;
 
@@ -49,6 +49,15 @@ impl Wanted {
     }
 }
 
+/// One value for each free joint.
+fn check_free(free_joints: &[String], free: &[f64]) -> PyResult<()> {
+    if free.len() == free_joints.len() {
+        return Ok(());
+    }
+    let (expected, names) = (free_joints.len(), free_joints.join(", "));
+    Err(PyValueError::new_err(format!("expected {expected} free values ({names}), got {}", free.len())))
+}
+
 /// A row for each solution.
 pub(crate) fn solve<'py>(
     py: Python<'py>,
@@ -58,20 +67,45 @@ pub(crate) fn solve<'py>(
     free: &[f64],
     wanted: Wanted,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    if free.len() != free_joints.len() {
-        return Err(PyValueError::new_err(format!(
-            "expected {} free values ({}), got {}",
-            free_joints.len(),
-            free_joints.join(", "),
-            free.len()
-        )));
-    }
+    check_free(free_joints, free)?;
     let mut solutions = IkSolutions::new();
     solver
         .solve_preferred(&arrays::pose(pose)?, free, &wanted.preferences(), &mut solutions)
         .map_err(|error| PyValueError::new_err(error.to_string()))?;
     let rows: Vec<Vec<f64>> = solutions.iter().map(<[f64]>::to_vec).collect();
     Ok(arrays::rows(py, &rows, solver.variables()))
+}
+
+/// Joint vectors as rows, their errors in metres and radians as rows, and which of them are solutions.
+pub(crate) type ClosestRows<'py> =
+    (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<bool>>);
+
+/// The joint vectors that come nearest to a pose.
+pub(crate) fn closest<'py>(
+    py: Python<'py>,
+    solver: &Solver,
+    free_joints: &[String],
+    pose: &PyReadonlyArray2<'py, f64>,
+    free: &[f64],
+    wanted: Wanted,
+    radian: Option<f64>,
+) -> PyResult<ClosestRows<'py>> {
+    check_free(free_joints, free)?;
+    let mut options = ClosestOptions::default();
+    if let Some(radian) = radian {
+        if !(radian.is_finite() && radian > 0.0) {
+            return Err(PyValueError::new_err("radian: expected a positive length"));
+        }
+        options.radian = radian;
+    }
+    let (pose, preferences) = (arrays::pose(pose)?, wanted.preferences());
+    let found = py
+        .detach(|| solver.solve_closest(&pose, free, &preferences, &options))
+        .map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let joints: Vec<Vec<f64>> = found.iter().map(|c| c.joints.clone()).collect();
+    let errors: Vec<Vec<f64>> = found.iter().map(|c| vec![c.position_error, c.rotation_error]).collect();
+    let exact = PyArray1::from_iter(py, found.iter().map(|c| c.exact));
+    Ok((arrays::rows(py, &joints, solver.variables()), arrays::rows(py, &errors, 2), exact))
 }
 
 /// Which values the free joints have, and which of them is asked about.

@@ -62,6 +62,23 @@ def test_free_intervals(solver):
         solver.free_intervals(pose, "elbow")
 
 
+def test_closest(solver):
+    joints = np.array([0.1, -0.4, 0.3, -1.8, 0.2, 1.7, 0.5])
+    given = solver.joint_names.index(solver.free_joints[0])
+    pose, free = solver.fk(joints), [joints[given]]
+    solutions, errors, exact = solver.closest(pose, free)
+    np.testing.assert_array_equal(solutions, solver.solve(pose, free, limits=True))
+    assert exact.all() and not errors.any()
+    pose[:3, 3] *= 3.0
+    assert len(solver.solve(pose, free)) == 0
+    nearest, errors, exact = solver.closest(pose, free, max_solutions=1)
+    assert nearest.shape == (1, 7) and not exact[0]
+    missed = np.linalg.norm(solver.fk(nearest[0])[:3, 3] - pose[:3, 3])
+    np.testing.assert_allclose(errors[0, 0], missed, atol=1e-9)
+    with pytest.raises(ValueError, match="radian: expected a positive length"):
+        solver.closest(pose, free, radian=0.0)
+
+
 def test_sources(solver, tmp_path):
     for name in ["arm.rs", "arm.c", "arm.ik"]:
         solver.write(tmp_path / name)

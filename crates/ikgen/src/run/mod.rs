@@ -3,6 +3,7 @@
 
 mod batch;
 pub mod bytecode;
+mod closest;
 mod families;
 mod general;
 pub mod interpreter;
@@ -13,6 +14,7 @@ mod true_chain;
 
 pub use batch::Batch;
 pub use bytecode::{Bytecode, Candidate, TooLarge};
+pub use closest::{Closest, ClosestOptions};
 #[cfg(feature = "generate")]
 pub(crate) use general::six_lines;
 pub use redundancy::{Completeness, FreeIntervals, RedundancyOptions, Side, SwivelBranch};

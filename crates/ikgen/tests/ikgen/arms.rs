@@ -248,6 +248,18 @@ pub(crate) fn sliding(mut chain: SerialChain, joints: &[usize]) -> SerialChain {
     chain
 }
 
+/// The chain with a joint that follows an earlier one.
+pub(crate) fn following(mut chain: SerialChain, joint: usize, leader: usize, multiplier: f64) -> SerialChain {
+    let lost = chain.joints[joint].variable;
+    chain.joints[joint].multiplier = multiplier;
+    chain.joints[joint].variable = chain.joints[leader].variable;
+    chain.variables.remove(lost);
+    for joint in &mut chain.joints {
+        joint.variable -= usize::from(joint.variable > lost);
+    }
+    chain
+}
+
 /// Two turning joints, a quill and its turn.
 pub(crate) fn scara() -> SerialChain {
     let z = |x: f64| (Z, [x, 0.0, 0.2]);

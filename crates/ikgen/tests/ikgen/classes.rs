@@ -2,7 +2,7 @@
 
 use robotc_core::Seed;
 use robotc_core::ik::{IkSolutions, InverseKinematics};
-use robotc_core::model::ChainVariable;
+use robotc_core::model::{ChainMotion, ChainVariable, SerialChain};
 use robotc_ikgen::report::{ProofOptions, poses, prove};
 use robotc_ikgen::run::Batch;
 use robotc_ikgen::{Compiled, Options, Solver, check, compile};
@@ -61,13 +61,44 @@ fn offset_wrists_are_solved_everywhere_on_the_grid_of_right_angles() {
     }
 }
 
+/// A chain of so many turning joints without any relation between their axes.
+fn crooked(joints: usize) -> SerialChain {
+    let mut rng = Seed::new(8).rng();
+    let axes: Vec<([f64; 3], [f64; 3])> = (0..joints)
+        .map(|_| (rng.direction().into_inner().into(), std::array::from_fn(|_| rng.range(-0.4, 0.4))))
+        .collect();
+    arms::chain("crooked", &axes, [0.3, 0.2, 0.1])
+}
+
 #[test]
 fn chains_that_no_strategy_fits_are_refused_with_a_reason() {
-    let refusal = compile(&arms::sliding(arms::skew(), &[1, 3]), &Options::default()).unwrap_err();
-    let reason =
-        "RPRPRR: joints 2, 4 each slide or move several joints, and no equation holds only one of them";
-    assert_eq!(refusal.reason, reason);
-    assert!(!refusal.trace.is_empty());
+    let turns_and_slides = {
+        let mut chain = crooked(7);
+        chain.joints[4].motion = ChainMotion::Prismatic;
+        arms::following(chain, 4, 2, 0.1)
+    };
+    let five_at_once =
+        [6, 5, 4, 3].into_iter().fold(crooked(10), |c, joint| arms::following(c, joint, 1, 0.5));
+    let refused = [
+        (
+            arms::sliding(arms::skew(), &[1, 3]),
+            "RPRPRR: joints 2, 4 each slide or move several joints, and no equation holds only one of them",
+        ),
+        (turns_and_slides, "RRRRPRR: joint 3 turns one joint and slides another"),
+        (five_at_once, "10R: joint 2 moves 5 joints, 4 at most"),
+        (crooked(13), "13R: name the free joints, 7 of them"),
+    ];
+    for (chain, reason) in refused {
+        let refusal = compile(&chain, &Options::default()).unwrap_err();
+        assert_eq!(refusal.reason, reason);
+        assert!(chain.variables.len() > 6 || !refusal.trace.is_empty());
+    }
+}
+
+#[test]
+fn of_thirteen_joints_seven_are_named() {
+    let options = Options { free: Some((6..13).collect()), ..Options::default() };
+    solved_everywhere(&compile(&crooked(13), &options).unwrap());
 }
 
 #[test]
@@ -105,7 +136,7 @@ fn of_many_joints_those_to_give_are_chosen() {
     let mut rail = arms::panda();
     let mut first = arms::panda().joints[0].clone();
     first.name = "rail".into();
-    first.motion = robotc_core::model::ChainMotion::Prismatic;
+    first.motion = ChainMotion::Prismatic;
     first.axis = nalgebra::Vector3::y_axis();
     first.previous_from_joint = robotc_core::Pose::identity();
     for joint in &mut rail.joints {

@@ -6,23 +6,11 @@ use robotc_core::model::{ChainMotion, SerialChain};
 use robotc_ikgen::report::{ProofOptions, poses, prove};
 use robotc_ikgen::{Compiled, Options, check, compile};
 
-use crate::arms::{self, chain, sliding};
+use crate::arms::{self, chain, following, sliding};
 
 const X: [f64; 3] = [1.0, 0.0, 0.0];
 const Y: [f64; 3] = [0.0, 1.0, 0.0];
 const Z: [f64; 3] = [0.0, 0.0, 1.0];
-
-/// The chain with a joint that follows an earlier one.
-fn following(mut chain: SerialChain, joint: usize, leader: usize, multiplier: f64) -> SerialChain {
-    let lost = chain.joints[joint].variable;
-    chain.joints[joint].multiplier = multiplier;
-    chain.joints[joint].variable = chain.joints[leader].variable;
-    chain.variables.remove(lost);
-    for joint in &mut chain.joints {
-        joint.variable -= usize::from(joint.variable > lost);
-    }
-    chain
-}
 
 /// A painter: a wrist of three oblique axes of which the middle one is two joints that turn in opposite directions (ABB IRB 5400).
 fn painter() -> SerialChain {

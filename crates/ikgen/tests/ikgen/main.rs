@@ -4,6 +4,7 @@
 
 mod arms;
 mod classes;
+mod closest;
 mod coupled;
 mod families;
 mod generated;

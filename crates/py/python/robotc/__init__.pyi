@@ -171,6 +171,22 @@ class InverseKinematics:
         weights: Sequence[float] | Array = (),
     ) -> Array | None:
         """The solution within limits that is nearest to `near`, over all values of a free joint; `None` when there is none."""
+    def closest(
+        self,
+        pose: Array,
+        free: Sequence[float] = (),
+        *,
+        limits: bool | Sequence[Sequence[float]] | Array = True,
+        near: Sequence[float] | Array | None = None,
+        max_solutions: int | None = None,
+        radian: float = 0.2,
+    ) -> tuple[Array, Array, Array]:
+        """The joint vectors that come nearest to `base_from_tip`: least squares, for poses that are out of reach.
+
+        Joint vectors, shape (n, joints), what each misses in metres and radians, shape (n, 2), and whether it is a solution all the same, shape
+        (n,). If the pose has solutions within limits they are returned, else local minima, the best first, where an error of `radian` metres
+        counts as much as one of one radian; then all joints move, the free ones too.
+        """
     def swivel(
         self,
         pose: Array,
