@@ -796,13 +796,13 @@ static int ik_third(const ik_vector forms[6], ik_turn found[2])
 }
 
 /* The pairs at a root where several solutions share the angle: as many null vectors as there are solutions, mixed. Multiplication by t
-   maps their space to itself, and its eigenvalues are the values of t. Returns the dimension of the null space; a space of one
-   dimension gives no pairs. */
-static int ik_several(const ik_six_rows *six, ik_turn turn, ik_turn pairs[6][2], int *count)
+   maps their space to itself, and its eigenvalues are the values of t. Pivots below the part `nothing` of the first one count as zero.
+   Returns the dimension of the null space; a space of one dimension gives no pairs. */
+static int ik_several(const ik_six_rows *six, ik_turn turn, double nothing, ik_turn pairs[6][2], int *count)
 {
     double vectors[3][6], left[3][3], right[3][3], map[IK_SIZE][IK_SIZE] = { { 0.0 } }, values[IK_SIZE][2], rows[54];
     double factor, swap;
-    int n = ik_null_space(six, turn, 3, 1e-6, vectors), found, i, j, k, r, c;
+    int n = ik_null_space(six, turn, 3, nothing, vectors), found, i, j, k, r, c;
     *count = 0;
     if (n < 2) return n;
     /* high = low T, by normal equations, solved by elimination. */
@@ -1303,7 +1303,7 @@ static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int 
             /* The rest shows in the view of the place. */
             for (j = 0; j < count; j++) done[j] |= near[j] && holds[j];
             turn = ik_turn_in_view(view, mean, &square);
-            k = ik_several(six, turn, pairs, &pairs_found);
+            k = ik_several(six, turn, 1e-6, pairs, &pairs_found);
             for (j = 0; j < pairs_found; j++) ik_add_candidate(loop, turn, pairs[j], found);
             if (k < 2 && ik_single(six, turn, pairs[0])) ik_add_candidate(loop, turn, pairs[0], found);
             continue;
@@ -1321,7 +1321,7 @@ static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int 
             for (j = 0; j < count; j++) done[j] |= near[j];
             merged = spread < 1e-5 || squared;
             turn = ik_turn_in_view(view, mean, &square);
-            k = ik_several(six, turn, pairs, &pairs_found);
+            k = ik_several(six, turn, 1e-6, pairs, &pairs_found);
             for (j = 0; j < pairs_found; j++) ik_add_candidate(loop, turn, pairs[j], found);
             apart &= merged && (k == together || (fold && ik_is_alone(six, turn)));
             if (k == together && merged) continue;
@@ -1733,12 +1733,15 @@ static int ik_look_at_piece(const ik_swept *swept, int code, const double *table
             /* Several solutions that share the value, or nearly do. */
             mean = sum / (double)together;
             ik_swept_at(swept, mean, code, &loop, &six);
-            all = ik_several(&six, still, pairs, &pairs_found) == together;
+            all = ik_several(&six, still, 1e-6, pairs, &pairs_found) == together;
             for (j = 0; j < pairs_found; j++) ik_add_swept(&loop, pairs[j], mean, swept->turns, found);
             if (all) {
                 for (j = 0; j < count; j++) done[j] |= near[j];
                 continue;
             }
+            /* The middle of roots that others are near is good to few digits. */
+            ik_several(&six, still, 1e-3, pairs, &pairs_found);
+            for (j = 0; j < pairs_found; j++) ik_add_swept(&loop, pairs[j], mean, swept->turns, found);
             apart = 0;
         }
         if (together == 1 && !(ik_abs(imaginary) > 0.0)) {

@@ -115,8 +115,18 @@ pub fn is_alone(six: &Six, turn: [f64; 2]) -> bool {
 /// by `t` maps their space to itself, and its eigenvalues are the values of `t`.
 ///
 /// Returns the dimension of the null space; a space of one dimension gives no pairs.
-pub fn several(six: &Six, turn: [f64; 2], mut found: impl FnMut(Pair)) -> usize {
-    let (vectors, n) = null_space(six, turn, 3, NOTHING);
+pub fn several(six: &Six, turn: [f64; 2], found: impl FnMut(Pair)) -> usize {
+    mixed(six, turn, NOTHING, found)
+}
+
+/// As [`several`] where the root is known to few digits, so that what should vanish may not quite: the pairs may be none of solutions.
+pub fn nearly_several(six: &Six, turn: [f64; 2], found: impl FnMut(Pair)) -> usize {
+    mixed(six, turn, NEARLY_NOTHING, found)
+}
+
+/// The pairs of a null space whose pivots are below the part `nothing` of the first one, and its dimension.
+fn mixed(six: &Six, turn: [f64; 2], nothing: f64, mut found: impl FnMut(Pair)) -> usize {
+    let (vectors, n) = null_space(six, turn, 3, nothing);
     if n < 2 {
         return n;
     }

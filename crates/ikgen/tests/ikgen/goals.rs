@@ -1,14 +1,16 @@
 //! Every type of goal, on chains that it suits.
 
 use nalgebra::Vector3;
+use robotc_core::Seed;
 use robotc_core::ik::{IkSolutions, InverseKinematics as _};
 use robotc_core::model::SerialChain;
 use robotc_ikgen::generate::natural;
 use robotc_ikgen::goal::pose_along;
-use robotc_ikgen::report::{ProofOptions, prove};
+use robotc_ikgen::report::{ProofOptions, poses, prove};
 use robotc_ikgen::{Compiled, GoalType, Options, Solver, compile};
 
 use crate::arms::{self, chain, sliding};
+use crate::real_arms::real;
 
 const X: [f64; 3] = [1.0, 0.0, 0.0];
 const Y: [f64; 3] = [0.0, 1.0, 0.0];
@@ -264,5 +266,21 @@ fn the_natural_type_follows_from_the_freedom() {
         (plane2(), TranslationXY2D),
     ] {
         assert_eq!(natural(&chain), goal, "{}", chain.name);
+    }
+}
+
+#[test]
+fn of_roots_that_nearly_meet_none_is_lost() {
+    let Some(chain) = real("franka_panda", "panda_link0", "panda_link8") else { return };
+    let compiled = compile(&chain, &Options { goal: GoalType::Ray4D, ..Options::default() }).unwrap();
+    let solver = compiled.solver();
+    // Its rays come in pairs with the same slide, and at the last of these vectors another pair is 3 mm away.
+    let sets = poses::sets(&chain, &compiled.free, 382, Seed::new(3));
+    let mut out = IkSolutions::new();
+    for q in &sets[0].vectors[340..] {
+        let free: Vec<f64> = compiled.free.iter().map(|v| q[*v]).collect();
+        solver.solve(&chain.forward(q), &free, &mut out);
+        let itself = |s: &[f64]| s.iter().zip(q).all(|(a, b)| (a - b).cos() > 1.0 - 1e-12);
+        assert!(out.iter().any(itself), "{q:?}");
     }
 }
