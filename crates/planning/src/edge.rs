@@ -48,6 +48,11 @@ pub trait EdgeChecker {
     /// direction, and the state stays valid. Zero when the checker does not know.
     fn state(&mut self, q: &[f64]) -> Result<f64, Obstruction>;
 
+    /// Whether the state is valid, without its clearance.
+    fn is_free(&mut self, q: &[f64]) -> Result<(), Obstruction> {
+        self.state(q).map(|_| ())
+    }
+
     /// A bound on how far any point of the moving bodies travels in the straight motion by `difference`, in the unit
     /// of [`resolution`](Self::resolution). A norm: twice the difference, twice the bound.
     fn travel(&self, difference: &[f64]) -> f64;

@@ -33,6 +33,11 @@ impl TravelBounds {
         row
     }
 
+    /// Adds one more coordinate, which moves anything by no more than `travel` metres for each unit.
+    pub(crate) fn add_coordinate(&mut self, travel: f64) {
+        self.rows.iter_mut().for_each(|row| row.push(travel));
+    }
+
     /// The farthest that any point of a body fixed to `link`, within `radius` of its origin, is from the root's origin.
     pub fn reach(&self, kinematics: &Kinematics, link: LinkIdx, radius: f64) -> f64 {
         self.row_and_reach(kinematics, link, radius).1

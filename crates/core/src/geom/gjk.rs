@@ -5,7 +5,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 
-use super::ConvexPart;
+use super::{ConvexPart, Otherwise, RoomAsked};
 
 /// What the distance is asked of: a compact convex set.
 pub(super) trait Convex {
@@ -70,6 +70,9 @@ const TOUCHING: f64 = 1e-12;
 
 /// The distance is refined until the proven bound is within this fraction of it.
 const RELATIVE_ERROR: f64 = 1e-9;
+
+/// A distance that is asked for roughly is found to within this fraction.
+const ROUGHLY: f64 = 0.1;
 
 /// A tetrahedron lower than this fraction of its edge is flat.
 const FLAT: f64 = 1e-10;
@@ -168,6 +171,52 @@ impl<'a, B: Convex> Pair<'a, B> {
             }
         }
         (best.1 > TOUCHING).then_some(best)
+    }
+
+    /// A unit direction from a to b, in the frame of a, along which the gap is more than `asked.least`, both without `grown`
+    /// metres of b's surroundings that belong to it; `None` when they are nearer than that or it cannot be told. How much
+    /// more it is: see [`RoomAsked`].
+    pub(super) fn room(&self, grown: f64, asked: &RoomAsked) -> Option<(Vector3<f64>, f64)> {
+        let least = asked.least.max(TOUCHING) + grown;
+        let enough = (asked.enough + grown).max(least);
+        let mut v = asked.along.unwrap_or_else(|| self.between());
+        if v.norm_squared() == 0.0 {
+            v = Vector3::x();
+        }
+        let corner = self.support(&v);
+        // The first corner already says something about the gap along the direction that it was looked for in.
+        let length = v.norm();
+        let mut best = (v / length, -corner.w.dot(&v) / length);
+        let mut simplex = Simplex::new(corner);
+        v = simplex.corners[0].w;
+        for _ in 0..MAX_ROUNDS {
+            if best.1 > enough {
+                break;
+            }
+            let length = v.norm();
+            if length <= least {
+                return None;
+            }
+            let corner = self.support(&-v);
+            let gap = corner.w.dot(&v) / length;
+            if gap > best.1 {
+                best = (-v / length, gap);
+            }
+            let is_close = match asked.otherwise {
+                Otherwise::Roughly => length - best.1 <= ROUGHLY * (length - grown),
+                Otherwise::Anything => length <= enough,
+            };
+            if best.1 > least && is_close || simplex.has(&corner.w) {
+                break;
+            }
+            simplex.push(corner);
+            match simplex.reduce() {
+                None => return None,
+                Some(nearer) if nearer.norm_squared() < v.norm_squared() => v = nearer,
+                Some(_) => break,
+            }
+        }
+        (best.1 > least).then_some((best.0, best.1 - grown))
     }
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::gjk::{Ask, Convex, Gap, Pair};
-use super::{Aabb, ConvexPart, Separation};
+use super::{Aabb, ConvexPart, RoomAsked, Separation};
 use crate::Pose;
 
 /// A convex solid that is described by a few numbers.
@@ -148,6 +148,18 @@ impl Lump {
                 sides.min(along(up, up.dot(&a.coords))).min(of_box(&self.bounds()))
             }
         }
+    }
+
+    /// A direction, as the part sees it, from the part to this with a gap as asked: see [`room`](super::room()).
+    pub fn room(&self, part: &ConvexPart, part_from_lump: &Pose, asked: &RoomAsked) -> Option<Separation> {
+        let (direction, gap) = Pair::new(part, &Core(self), part_from_lump).room(self.radius(), asked)?;
+        Some(Separation { direction: Unit::new_unchecked(direction), gap })
+    }
+
+    /// How far the lump is above the origin along a direction, all of it: metres.
+    #[inline]
+    pub(super) fn lowest(&self, direction: &Vector3<f64>) -> f64 {
+        direction.dot(&Core(self).farthest(&-direction).coords) - self.radius()
     }
 
     /// A direction, as the part sees it, from the part to this along which there is a gap: see [`separation`](super::separation).

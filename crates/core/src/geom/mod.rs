@@ -39,11 +39,12 @@ pub use mesh_index::{MeshIndex, NearestPoint, RayHit};
 pub use padding::{PaddedPart, PaddedParts, outside_of_bodies};
 pub use part::{ConvexPart, PartError, Plane};
 pub use parts::ConvexParts;
-pub use pile::Pile;
+pub use pile::{Pile, PileRoom};
 pub use polygon::{ConvexPolygon, HalfPlane};
 pub use primitive::{box_part, capsule_part, cylinder_part, sphere_part};
 pub use query::{
-    Contact, Distance, Separation, any_within, contact, distance, intersects, separation, within,
+    Contact, Distance, Otherwise, RoomAsked, Separation, any_within, contact, distance, intersects, room,
+    separation, within,
 };
 pub use shape::{parts_of, parts_of_shape};
 pub use sphere_cover::{CoverOptions, SphereCover, SphereNode};

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
-use super::{Aabb, ConvexPart, HeightField, Lump, PointCloud};
+use super::{Aabb, ConvexPart, HeightField, Lump, Otherwise, PointCloud, RoomAsked};
 use crate::Pose;
 use crate::model::{Geometry, Shape};
 
@@ -17,8 +17,51 @@ pub enum Pile {
     Field(Arc<HeightField>),
 }
 
-/// Distances are first found to within this fraction; what that leaves open is found closely.
-const ROUGH: f64 = 0.1;
+/// How much room there is between a part and a pile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PileRoom {
+    /// Metres.
+    pub gap: f64,
+    /// A direction along which much of the pile is apart from the part, if one was looked for.
+    pub along: Option<Vector3<f64>>,
+}
+
+/// Planes between a part and lumps of a pile, the one that was of use last first.
+#[derive(Default)]
+struct Planes {
+    /// Normals away from the part, and how high it is along them; in the frame of the pile.
+    planes: [(Vector3<f64>, f64); PLANES],
+    len: usize,
+}
+
+/// So many planes are remembered.
+const PLANES: usize = 4;
+
+impl Planes {
+    fn add(&mut self, part: &ConvexPart, part_from_pile: &Pose, direction: &Vector3<f64>) {
+        let normal = part_from_pile.inverse_transform_vector(direction);
+        let highest = part_from_pile.inverse_transform_point(part.support(direction));
+        self.len = (self.len + 1).min(PLANES);
+        self.planes[..self.len].rotate_right(1);
+        self.planes[0] = (normal, normal.dot(&highest.coords));
+    }
+
+    /// Whether a lump is farther than `far` metres beyond one of them, up to rounding.
+    fn clear(&mut self, lump: &Lump, far: f64) -> bool {
+        let is_beyond =
+            |(normal, height): &(Vector3<f64>, f64)| lump.lowest(normal) - height > far + ROUNDING;
+        match self.planes[..self.len].iter().position(is_beyond) {
+            Some(used) => {
+                self.planes[..=used].rotate_right(1);
+                true
+            }
+            None => false,
+        }
+    }
+}
+
+/// Heights above a plane are off by no more than this, metres.
+const ROUNDING: f64 = 1e-12;
 
 impl Pile {
     /// The pile that a shape is, if it is one; in the frame of the shape.
@@ -60,25 +103,50 @@ impl Pile {
     /// At least nine tenths of the distance of a part, or `far` when it is farther away; never more than the distance. Zero when
     /// they touch. Metres.
     pub fn gap(&self, part: &ConvexPart, part_from_pile: &Pose, far: f64) -> f64 {
+        let asked = RoomAsked { least: 0.0, enough: far, otherwise: Otherwise::Roughly, along: None };
+        self.room(part, part_from_pile, &asked).map_or(0.0, |room| room.gap)
+    }
+
+    /// How far away a part is: more than is asked at least, no more than its distance or enough, and otherwise as [`Otherwise`]
+    /// says. `None` when it is nearer, or when that cannot be told. Directions are from the part to the pile, as the part sees
+    /// them.
+    ///
+    /// A plane between the part and one lump has many more on its other side: each plane that was found is tried on nodes and
+    /// lumps before they are looked at for themselves.
+    pub fn room(&self, part: &ConvexPart, part_from_pile: &Pose, asked: &RoomAsked) -> Option<PileRoom> {
         let query = Query::new(part, part_from_pile);
-        let mut least = far;
+        let mut planes = Planes::default();
+        if let Some(along) = &asked.along {
+            planes.add(part, part_from_pile, along);
+        }
+        // What is asked about lumps that are still to come.
+        let mut now = RoomAsked { enough: asked.enough.max(asked.least), along: None, ..*asked };
+        let mut touches = false;
         self.walk(&query.centre, |lump, leaf| {
-            if least <= 0.0 || query.bound(lump) >= least {
+            if touches || query.bound(lump) > now.enough || planes.clear(lump, now.enough) {
                 return false;
             }
-            let gap = lump.separation(part, part_from_pile, ROUGH).map_or(0.0, |found| found.gap);
-            if gap >= least {
-                return false;
+            if !leaf && lump.bounds().contains(&query.centre) {
+                return true;
             }
-            if leaf {
-                // Of what is round, the radius may have taken most of what was found.
-                let closely = || lump.distance(part, part_from_pile);
-                let is_rough = matches!(lump, Lump::Ball { radius, .. } if gap < 10.0 * radius) || gap == 0.0;
-                least = least.min(if is_rough { closely() } else { gap });
+            // Of a node it matters only whether it can be left out.
+            let least = if leaf { now.least } else { now.enough };
+            match lump.room(part, part_from_pile, &RoomAsked { least, ..now }) {
+                Some(apart) if apart.gap > now.enough => planes.add(part, part_from_pile, &apart.direction),
+                Some(apart) if leaf => {
+                    planes.add(part, part_from_pile, &apart.direction);
+                    now.enough = match now.otherwise {
+                        Otherwise::Roughly => apart.gap,
+                        Otherwise::Anything => now.least,
+                    };
+                }
+                None if leaf => touches = true,
+                Some(_) | None => return true,
             }
-            true
+            false
         });
-        least.max(0.0)
+        let along = planes.planes[..planes.len].first().map(|plane| part_from_pile * plane.0);
+        (!touches).then_some(PileRoom { gap: now.enough, along })
     }
 
     /// Whether a part is not more than `margin` metres away. "No" is certain; doubt counts as "yes".
@@ -140,7 +208,7 @@ mod tests {
     use super::*;
     use crate::geom::{box_part, cylinder_part, sphere_part};
     use crate::rng::{Rng, Seed};
-    use nalgebra::{Translation3, Vector3};
+    use nalgebra::Translation3;
 
     fn point(rng: &mut Rng, size: f64) -> Point3<f64> {
         Point3::new(rng.range(-size, size), rng.range(-size, size), rng.range(-size, size))
@@ -194,6 +262,16 @@ mod tests {
                 let found = pile.gap(&part, &part_from_pile, far);
                 assert!(found <= expected.min(far) + 1e-9, "{found} {expected}");
                 assert!(found >= 0.9 * expected.min(far) - 1e-9, "{found} {expected}");
+            }
+            for (least, enough) in
+                [(0.0, 0.1), (0.5 * expected, 0.8 * expected), (0.9 * expected, 2.0 * expected)]
+            {
+                let asked = RoomAsked { least, enough, otherwise: Otherwise::Anything, along: None };
+                let found = pile.room(&part, &part_from_pile, &asked);
+                assert_eq!(found.is_some(), expected > least, "{expected} {asked:?}");
+                let Some(PileRoom { gap: found, .. }) = found else { continue };
+                assert!(found <= expected + 1e-9 && found >= least, "{found} {expected} {asked:?}");
+                assert_eq!(found >= enough, expected > enough, "{found} {expected} {asked:?}");
             }
             assert!(pile.is_within(&part, &part_from_pile, expected + 1e-7));
             assert!(expected < 1e-6 || !pile.is_within(&part, &part_from_pile, expected - 1e-6));

@@ -108,6 +108,37 @@ pub fn separation(a: &ConvexPart, b: &ConvexPart, a_from_b: &Pose, relative: f64
     Some(Separation { direction: Unit::new_unchecked(direction), gap })
 }
 
+/// What is asked about the room between two things.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RoomAsked {
+    /// They have to be farther apart than this, metres.
+    pub least: f64,
+    /// How much farther than this they are does not matter, metres.
+    pub enough: f64,
+    /// What is of use where it is less.
+    pub otherwise: Otherwise,
+    /// A direction, as [`Separation::direction`], that is looked along first: one that was of use not long ago.
+    pub along: Option<Vector3<f64>>,
+}
+
+/// Of what use a gap is that is less than enough.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Otherwise {
+    /// At least nine tenths of the distance are found.
+    Roughly,
+    /// It does not matter how far things are apart, as long as they are.
+    Anything,
+}
+
+/// A direction along which two parts are farther apart than asked at least; `None` when there is none, or when that cannot be
+/// told.
+///
+/// Its gap is more than enough, or else what [`Otherwise`] says. Cheaper than [`separation`] where little is asked.
+pub fn room(a: &ConvexPart, b: &ConvexPart, a_from_b: &Pose, asked: &RoomAsked) -> Option<Separation> {
+    let (direction, gap) = Pair::new(a, b, a_from_b).room(0.0, asked)?;
+    Some(Separation { direction: Unit::new_unchecked(direction), gap })
+}
+
 /// How the parts touch; `None` when they are more than `margin` metres apart.
 pub fn contact(
     a: &ConvexPart,
@@ -218,6 +249,30 @@ mod tests {
                 };
                 let between = -extent(&b, &world_from_b, -n.into_inner()) - extent(&a, &world_from_a, *n);
                 assert!((between - gap).abs() < 1e-9, "{between} {gap}");
+            }
+            for (least, enough) in
+                [(0.0, f64::INFINITY), (0.0, 0.05), (0.03, 0.2), (0.5 * expected, 0.7 * expected)]
+            {
+                for otherwise in [Otherwise::Roughly, Otherwise::Anything] {
+                    let along = rng.unit() < 0.5;
+                    let along = along.then(|| rng.direction().into_inner());
+                    let asked = RoomAsked { least, enough, otherwise, along };
+                    let found = room(&a, &b, &world_from_a.inv_mul(&world_from_b), &asked);
+                    assert_eq!(found.is_some(), expected > least, "{expected} {asked:?}");
+                    let Some(Separation { direction, gap }) = found else { continue };
+                    let n = (world_from_a.rotation * direction).into_inner();
+                    let reach = |part: &ConvexPart, pose: &Pose, n: Vector3<f64>| {
+                        n.dot(&(pose * part.support(&(pose.rotation.inverse() * n))).coords)
+                    };
+                    let between = -reach(&b, &world_from_b, -n) - reach(&a, &world_from_a, n);
+                    assert!((between - gap).abs() < 1e-9 && gap > least, "{between} {gap} {asked:?}");
+                    let is_rough = gap >= 0.9 * expected - 1e-6;
+                    assert!(
+                        gap > enough
+                            || is_rough
+                            || otherwise == Otherwise::Anything && expected <= enough / 0.9
+                    );
+                }
             }
             if touching {
                 deep += 1;

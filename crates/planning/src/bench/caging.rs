@@ -12,7 +12,7 @@ use crate::manipulation::{
     Manipulation, ManipulationOptions, article_steps, finger_space, gripper_links, with_fingers_space,
 };
 use crate::mechanism::Mechanism;
-use crate::scene::{ArticleChecker, Rules, Scene};
+use crate::scene::{MovingArticle, RobotChecker, Rules, Scene};
 
 /// Where the article is put, and how hard it is tried to open it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -209,12 +209,18 @@ fn try_place(
         ..Rules::default()
     };
     let grasps: Vec<CageGrasp> = cages.iter().map(|cage| cage.grasp.clone()).collect();
-    let of_article = (&article, task.objects.len());
-    let mut checker =
-        ArticleChecker::new(&scene, &joints, &dofs, of_article, &task.start, rules, planner.fine_resolution);
-    let standing = [task.start.select(&dofs), vec![from]].concat();
+    let mut moving = MovingArticle::new(&scene, &article, task.objects.len());
     // Where the arm is at first does not matter, but its base must not be in the article.
-    checker.stands_clear(&standing).then_some(())?;
+    moving.stands_clear(&scene, &task.start, &dofs, from).then_some(())?;
+    let space = moving.space(&joints);
+    let checker = RobotChecker::with_article(
+        &scene,
+        &space,
+        (&dofs, moving),
+        &task.start,
+        rules,
+        planner.fine_resolution,
+    );
     let steps = article_steps(&mechanism, from, to, planner.caging.shift, &grasps);
     let rest = task.start.select(problem.arm.dofs());
     let caged = CagedObject::new(problem.arm, &grasps, steps, checker, &rest, planner.caging).ok()?;

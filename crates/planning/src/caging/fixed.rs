@@ -79,6 +79,16 @@ impl<T: ArticulatedTask + ?Sized> ArticulatedTask for FixedGrasp<'_, T> {
         self.task.candidates(step, grasp, near)
     }
 
+    fn take_candidate(
+        &mut self,
+        step: usize,
+        grasp: usize,
+        near: &[f64],
+        take: &mut dyn FnMut(Vec<f64>) -> bool,
+    ) -> bool {
+        self.is_contact(grasp) && self.task.take_candidate(step, grasp, near, take)
+    }
+
     fn free(&mut self, state: &CagedState) -> Result<(), Obstruction> {
         self.task.free(state)
     }

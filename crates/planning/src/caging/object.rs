@@ -228,26 +228,63 @@ impl<C: EdgeChecker> ArticulatedTask for CagedObject<'_, C> {
     }
 
     fn candidates(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
+        if let Some(near) = near {
+            let mut all = Vec::new();
+            self.take_candidate(step, grasp, near, &mut |q| {
+                all.push(q);
+                false
+            });
+            return all;
+        }
         let world_from_tool = self.world_from_tool(step, grasp);
         let mut found = Vec::new();
-        for free in self.free_values(near) {
-            let reference = near.unwrap_or(&self.rest);
-            let (solutions, _) = self.arm.inverse(&world_from_tool, &free, reference, &mut self.scratch);
-            for q in solutions {
-                let distance = self.arm.space().distance(&q, reference);
-                // What is too far for a motion is of no use.
-                if near.is_none() || distance <= self.longest_motion {
-                    found.push((distance, q));
-                }
-            }
+        for free in self.free_values(None) {
+            let (solutions, _) = self.arm.inverse(&world_from_tool, &free, &self.rest, &mut self.scratch);
+            let space = self.arm.space();
+            found.extend(solutions.into_iter().map(|q| (space.distance(&q, &self.rest), q)));
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         found.into_iter().map(|(_, q)| q).collect()
     }
 
+    /// Values of the free joints farther away are tried when nothing nearer is taken: no configuration with them is nearer.
+    fn take_candidate(
+        &mut self,
+        step: usize,
+        grasp: usize,
+        near: &[f64],
+        take: &mut dyn FnMut(Vec<f64>) -> bool,
+    ) -> bool {
+        let (world_from_tool, space) = (self.world_from_tool(step, grasp), self.arm.space());
+        let at_least = |free: Vec<f64>| {
+            let mut q = near.to_vec();
+            self.arm.free_variables().iter().zip(&free).for_each(|(&variable, &value)| q[variable] = value);
+            (space.distance(&q, near), free)
+        };
+        let mut values: Vec<_> = self.free_values(Some(near)).into_iter().map(at_least).collect();
+        values.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // What is too far for a motion is of no use.
+        values.retain(|(distance, _)| *distance <= self.longest_motion);
+        // Found but not shown, the farthest first.
+        let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
+        for (number, (_, free)) in values.iter().enumerate() {
+            let (solutions, _) = self.arm.inverse(&world_from_tool, free, near, &mut self.scratch);
+            let with_distance = solutions.into_iter().map(|q| (space.distance(&q, near), q));
+            found.extend(with_distance.filter(|(distance, _)| *distance <= self.longest_motion));
+            found.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let next = values.get(number + 1).map_or(f64::INFINITY, |(distance, _)| *distance);
+            while let Some((_, q)) = found.pop_if(|(distance, _)| *distance < next) {
+                if take(q) {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
     fn free(&mut self, state: &CagedState) -> Result<(), Obstruction> {
         let whole = self.whole(state);
-        self.checker.state(&whole).map(|_| ())
+        self.checker.is_free(&whole)
     }
 
     fn motion(&mut self, from: &CagedState, to: &CagedState) -> Result<(), Obstruction> {

@@ -11,6 +11,7 @@ use super::task::{
     ArticulatedTask, CagedState, CagingFailure, CagingFailureReason, CagingSolution, CagingStatistics,
 };
 use crate::budget::Budget;
+use crate::space::Space;
 
 /// States that are added one after the other before they are looked at for collisions: most ways end sooner, out of reach.
 const AHEAD: usize = 8;
@@ -62,21 +63,22 @@ pub fn randomized_search<T: ArticulatedTask + ?Sized>(
     budget: &Budget<'_>,
     rng: &mut Rng,
 ) -> Result<CagingSolution, CagingFailure> {
-    let mut search = Search {
+    let tree = Tree {
         nodes: Vec::new(),
         by_step: vec![Vec::new(); task.steps()],
-        open: BinaryHeap::new(),
-        task,
-        options,
-        statistics: CagingStatistics::default(),
+        space: task.arm_space().clone(),
+        same: options.same * task.longest_motion(),
     };
+    let mut search =
+        Search { tree, open: BinaryHeap::new(), task, options, statistics: CagingStatistics::default() };
     let outcome = search.run(start, budget, rng);
     match outcome {
-        Ok(node) => Ok(CagingSolution { states: search.path_to(node), statistics: search.statistics }),
+        Ok(node) => Ok(CagingSolution { states: search.tree.path_to(node), statistics: search.statistics }),
         Err(reason) => {
-            let looked_at = (0..search.nodes.len()).filter(|&n| search.nodes[n].sight == Sight::Free);
+            let tree = &search.tree;
+            let looked_at = (0..tree.nodes.len()).filter(|&n| tree.nodes[n].sight == Sight::Free);
             let nearest = looked_at.min_by_key(|&n| search.remaining(n));
-            let partial = nearest.map(|n| search.path_to(n)).unwrap_or_default();
+            let partial = nearest.map(|n| tree.path_to(n)).unwrap_or_default();
             Err(CagingFailure { reason, partial, statistics: search.statistics })
         }
     }
@@ -123,134 +125,31 @@ impl Ord for Entry {
     }
 }
 
-struct Search<'t, T: ?Sized> {
-    task: &'t mut T,
-    options: &'t RandomizedOptions,
+/// States that were drawn.
+struct Tree {
     nodes: Vec<Node>,
     /// Nodes of each object step.
     by_step: Vec<Vec<usize>>,
+    /// That of the arm.
+    space: Space,
+    /// Two states of the same step and grasp nearer than this are the same.
+    same: f64,
+}
+
+struct Search<'t, T: ?Sized> {
+    task: &'t mut T,
+    options: &'t RandomizedOptions,
+    tree: Tree,
     open: BinaryHeap<Entry>,
     statistics: CagingStatistics,
 }
 
-impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
-    fn run(
-        &mut self,
-        start: &CageStart,
-        budget: &Budget<'_>,
-        rng: &mut Rng,
-    ) -> Result<usize, CagingFailureReason> {
-        let goal = self.task.steps() - 1;
-        // Grasps at the start that are still to be tried, when there is a choice.
-        let mut roots: Vec<usize> = Vec::new();
-        let first = match start {
-            CageStart::Step(step) => {
-                roots = (0..self.task.grasps()).filter(|&g| self.task.is_usable(g)).collect();
-                *step
-            }
-            CageStart::State(state) => {
-                self.add(state.clone(), None);
-                self.nodes[0].sight = Sight::Free;
-                state.step
-            }
-        };
-        let mut draws = 0;
-        loop {
-            // Another root while nothing better is open: it costs as much as a state at the start.
-            let best = self.open.peek().map_or(f64::INFINITY, |entry| entry.total);
-            if !roots.is_empty() && best > self.heuristic(first) {
-                budget.check().map_err(CagingFailureReason::Interrupted)?;
-                let grasp = roots.swap_remove(rng.below(roots.len()));
-                if first != goal || self.task.is_contact(grasp) {
-                    for q in self.candidates(first, grasp, None) {
-                        self.add(CagedState { step: first, grasp, q }, None);
-                    }
-                }
-                continue;
-            }
-            let Some(Entry { total, node }) = self.open.pop() else {
-                return Err(match (self.nodes.is_empty(), first == goal) {
-                    (false, _) => CagingFailureReason::NoPath,
-                    (true, true) => CagingFailureReason::NoContact,
-                    (true, false) => CagingFailureReason::OutOfReach { step: first },
-                });
-            };
-            let Some(unseen) = self.unseen(node) else { continue };
-            let here = &self.nodes[node].state;
-            let arrived = here.step == goal && self.task.is_contact(here.grasp);
-            if (arrived || unseen.len() >= AHEAD) && !self.look_at(&unseen, budget)? {
-                continue;
-            }
-            if arrived {
-                return Ok(node);
-            }
-            let mut children = 0;
-            while children < self.options.children && !self.nodes[node].pool.is_empty() {
-                budget.check().map_err(CagingFailureReason::Interrupted)?;
-                draws += 1;
-                if draws > self.options.max_draws {
-                    return Err(CagingFailureReason::Iterations);
-                }
-                children += u32::from(self.draw_from(node, rng));
-            }
-            if !self.nodes[node].pool.is_empty() {
-                // Later it may be worth another look.
-                let penalty = self.options.heuristic * self.task.longest_motion();
-                self.open.push(Entry { total: total + penalty, node });
-            }
-        }
-    }
-
-    /// One draw without replacement; whether it gave a new state (SampleNN).
-    ///
-    /// The first one goes on with the same grasp, which is what works most often; later ones prefer to go on.
-    fn draw_from(&mut self, node: usize, rng: &mut Rng) -> bool {
-        let from = self.nodes[node].state.clone();
-        let (task, ahead) = (&*self.task, self.task.remaining(from.step));
-        let goes_on = |&(step, _): &(usize, usize)| task.remaining(step) < ahead;
-        let Node { pool, drawn, .. } = &mut self.nodes[node];
-        let same = |entry: &(usize, usize)| goes_on(entry) && entry.1 == from.grasp;
-        let first = if *drawn { None } else { pool.iter().position(same) };
-        *drawn = true;
-        let number = first.unwrap_or_else(|| {
-            let number = rng.below(pool.len());
-            if goes_on(&pool[number]) || rng.unit() >= self.options.ahead {
-                number
-            } else {
-                rng.below(pool.len())
-            }
-        });
-        let (step, grasp) = pool.swap_remove(number);
-        for q in self.candidates(step, grasp, Some(&from.q)) {
-            let to = CagedState { step, grasp, q };
-            match self.known(&to, node) {
-                Some(Sight::Blocked) => {}
-                Some(_) => return false,
-                None => {
-                    self.add(to, Some(node));
-                    return true;
-                }
-            }
-        }
-        false
-    }
-
-    fn candidates(&mut self, step: usize, grasp: usize, near: Option<&[f64]>) -> Vec<Vec<f64>> {
-        self.statistics.inverse_calls += 1;
-        let found = self.task.candidates(step, grasp, near);
-        self.statistics.states += found.len() as u32;
-        let longest = self.task.longest_motion();
-        let reached =
-            |q: &Vec<f64>| near.is_none_or(|near| self.task.arm_space().distance(near, q) <= longest);
-        found.into_iter().filter(reached).collect()
-    }
-
+impl Tree {
     /// What became of a state that was drawn before, from anywhere; one that is blocked from elsewhere may do from here.
     fn known(&self, state: &CagedState, parent: usize) -> Option<Sight> {
-        let same = self.options.same * self.task.longest_motion();
         let known = self.by_step[state.step].iter().copied().filter(|&n| {
             let known = &self.nodes[n].state;
-            known.grasp == state.grasp && self.task.arm_space().distance(&known.q, &state.q) < same
+            known.grasp == state.grasp && self.space.distance(&known.q, &state.q) < self.same
         });
         let mut blocked = None;
         for node in known {
@@ -279,45 +178,177 @@ impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
         Some(unseen)
     }
 
+    fn path_to(&self, node: usize) -> Vec<CagedState> {
+        let mut path = Vec::new();
+        let mut at = Some(node);
+        while let Some(n) = at {
+            path.push(self.nodes[n].state.clone());
+            at = self.nodes[n].parent;
+        }
+        path.reverse();
+        path
+    }
+}
+
+impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
+    fn run(
+        &mut self,
+        start: &CageStart,
+        budget: &Budget<'_>,
+        rng: &mut Rng,
+    ) -> Result<usize, CagingFailureReason> {
+        let goal = self.task.steps() - 1;
+        // Grasps at the start that are still to be tried, when there is a choice.
+        let mut roots: Vec<usize> = Vec::new();
+        let first = match start {
+            CageStart::Step(step) => {
+                roots = (0..self.task.grasps()).filter(|&g| self.task.is_usable(g)).collect();
+                *step
+            }
+            CageStart::State(state) => {
+                self.add(state.clone(), None);
+                self.tree.nodes[0].sight = Sight::Free;
+                state.step
+            }
+        };
+        let mut draws = 0;
+        loop {
+            // Another root while nothing better is open: it costs as much as a state at the start.
+            let best = self.open.peek().map_or(f64::INFINITY, |entry| entry.total);
+            if !roots.is_empty() && best > self.heuristic(first) {
+                budget.check().map_err(CagingFailureReason::Interrupted)?;
+                let grasp = roots.swap_remove(rng.below(roots.len()));
+                if first != goal || self.task.is_contact(grasp) {
+                    for q in self.roots(first, grasp) {
+                        self.add(CagedState { step: first, grasp, q }, None);
+                    }
+                }
+                continue;
+            }
+            let Some(Entry { total, node }) = self.open.pop() else {
+                return Err(match (self.tree.nodes.is_empty(), first == goal) {
+                    (false, _) => CagingFailureReason::NoPath,
+                    (true, true) => CagingFailureReason::NoContact,
+                    (true, false) => CagingFailureReason::OutOfReach { step: first },
+                });
+            };
+            let Some(unseen) = self.tree.unseen(node) else { continue };
+            let here = &self.tree.nodes[node].state;
+            let arrived = here.step == goal && self.task.is_contact(here.grasp);
+            if (arrived || unseen.len() >= AHEAD) && !self.look_at(&unseen, budget)? {
+                continue;
+            }
+            if arrived {
+                return Ok(node);
+            }
+            let mut children = 0;
+            while children < self.options.children && !self.tree.nodes[node].pool.is_empty() {
+                budget.check().map_err(CagingFailureReason::Interrupted)?;
+                draws += 1;
+                if draws > self.options.max_draws {
+                    return Err(CagingFailureReason::Iterations);
+                }
+                children += u32::from(self.draw_from(node, rng));
+            }
+            if !self.tree.nodes[node].pool.is_empty() {
+                // Later it may be worth another look.
+                let penalty = self.options.heuristic * self.task.longest_motion();
+                self.open.push(Entry { total: total + penalty, node });
+            }
+        }
+    }
+
+    /// One draw without replacement; whether it gave a new state (SampleNN).
+    ///
+    /// The first one goes on with the same grasp, which is what works most often; later ones prefer to go on.
+    fn draw_from(&mut self, node: usize, rng: &mut Rng) -> bool {
+        let from = self.tree.nodes[node].state.clone();
+        let (task, ahead) = (&*self.task, self.task.remaining(from.step));
+        let goes_on = |&(step, _): &(usize, usize)| task.remaining(step) < ahead;
+        let Node { pool, drawn, .. } = &mut self.tree.nodes[node];
+        let same = |entry: &(usize, usize)| goes_on(entry) && entry.1 == from.grasp;
+        let first = if *drawn { None } else { pool.iter().position(same) };
+        *drawn = true;
+        let number = first.unwrap_or_else(|| {
+            let number = rng.below(pool.len());
+            if goes_on(&pool[number]) || rng.unit() >= self.options.ahead {
+                number
+            } else {
+                rng.below(pool.len())
+            }
+        });
+        let (step, grasp) = pool.swap_remove(number);
+        let Self { task, tree, statistics, .. } = self;
+        let (longest, mut new) = (task.longest_motion(), None);
+        statistics.inverse_calls += 1;
+        task.take_candidate(step, grasp, &from.q, &mut |q| {
+            statistics.states += 1;
+            if tree.space.distance(&from.q, &q) > longest {
+                return false;
+            }
+            let to = CagedState { step, grasp, q };
+            match tree.known(&to, node) {
+                Some(Sight::Blocked) => false,
+                Some(_) => true,
+                None => {
+                    new = Some(to);
+                    true
+                }
+            }
+        });
+        let is_new = new.is_some();
+        new.into_iter().for_each(|to| self.add(to, Some(node)));
+        is_new
+    }
+
+    /// Configurations from which the object may be grasped at a step.
+    fn roots(&mut self, step: usize, grasp: usize) -> Vec<Vec<f64>> {
+        self.statistics.inverse_calls += 1;
+        let found = self.task.candidates(step, grasp, None);
+        self.statistics.states += found.len() as u32;
+        found
+    }
+
     /// Looks at states for collisions, the first one being the last; whether all are free.
     fn look_at(&mut self, unseen: &[usize], budget: &Budget<'_>) -> Result<bool, CagingFailureReason> {
         for &node in unseen.iter().rev() {
             budget.check().map_err(CagingFailureReason::Interrupted)?;
-            let (state, parent) = (&self.nodes[node].state, self.nodes[node].parent);
+            let (state, parent) = (&self.tree.nodes[node].state, self.tree.nodes[node].parent);
             let outcome = match parent {
                 Some(parent) => {
                     self.statistics.motions += 1;
-                    self.task.motion(&self.nodes[parent].state, state)
+                    self.task.motion(&self.tree.nodes[parent].state, state)
                 }
                 None => self.task.free(state),
             };
             if !self.statistics.passes(outcome) {
-                self.nodes[node].sight = Sight::Blocked;
+                self.tree.nodes[node].sight = Sight::Blocked;
                 if let Some(parent) = parent {
                     self.draw_again(node, parent);
                 }
                 return Ok(false);
             }
-            self.nodes[node].sight = Sight::Free;
+            self.tree.nodes[node].sight = Sight::Free;
         }
         Ok(true)
     }
 
     /// Another configuration of the grasp and step of a blocked node may do.
     fn draw_again(&mut self, blocked: usize, parent: usize) {
-        let drawn = (self.nodes[blocked].state.step, self.nodes[blocked].state.grasp);
-        let of_parent =
-            |&&n: &&usize| self.nodes[n].parent == Some(parent) && self.nodes[n].state.grasp == drawn.1;
-        if self.by_step[drawn.0].iter().filter(of_parent).count() < TRIES {
-            self.nodes[parent].pool.push(drawn);
-            let total = self.nodes[parent].cost + self.heuristic(self.nodes[parent].state.step);
+        let drawn = (self.tree.nodes[blocked].state.step, self.tree.nodes[blocked].state.grasp);
+        let of_parent = |&&n: &&usize| {
+            self.tree.nodes[n].parent == Some(parent) && self.tree.nodes[n].state.grasp == drawn.1
+        };
+        if self.tree.by_step[drawn.0].iter().filter(of_parent).count() < TRIES {
+            self.tree.nodes[parent].pool.push(drawn);
+            let total = self.tree.nodes[parent].cost + self.heuristic(self.tree.nodes[parent].state.step);
             self.open.push(Entry { total, node: parent });
         }
     }
 
     fn add(&mut self, state: CagedState, parent: Option<usize>) {
         let cost = parent.map_or(0.0, |p| {
-            let before = &self.nodes[p];
+            let before = &self.tree.nodes[p];
             before.cost + self.task.arm_space().distance(&before.state.q, &state.q)
         });
         let goal = self.task.steps() - 1;
@@ -330,10 +361,10 @@ impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
                 }
             }
         }
-        let node = self.nodes.len();
-        self.by_step[state.step].push(node);
+        let node = self.tree.nodes.len();
+        self.tree.by_step[state.step].push(node);
         self.open.push(Entry { total: cost + self.heuristic(state.step), node });
-        self.nodes.push(Node { state, parent, cost, pool, drawn: false, sight: Sight::Unseen });
+        self.tree.nodes.push(Node { state, parent, cost, pool, drawn: false, sight: Sight::Unseen });
     }
 
     fn heuristic(&self, step: usize) -> f64 {
@@ -341,17 +372,6 @@ impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
     }
 
     fn remaining(&self, node: usize) -> usize {
-        self.task.remaining(self.nodes[node].state.step)
-    }
-
-    fn path_to(&self, node: usize) -> Vec<CagedState> {
-        let mut path = Vec::new();
-        let mut at = Some(node);
-        while let Some(n) = at {
-            path.push(self.nodes[n].state.clone());
-            at = self.nodes[n].parent;
-        }
-        path.reverse();
-        path
+        self.task.remaining(self.tree.nodes[node].state.step)
     }
 }

@@ -56,6 +56,19 @@ impl<T: ArticulatedTask + ?Sized> ArticulatedTask for StartingAt<'_, T> {
         }
     }
 
+    fn take_candidate(
+        &mut self,
+        step: usize,
+        grasp: usize,
+        near: &[f64],
+        take: &mut dyn FnMut(Vec<f64>) -> bool,
+    ) -> bool {
+        match step {
+            0 => self.solutions(step, grasp, Some(near)).into_iter().any(take),
+            _ => self.task.take_candidate(step, grasp, near, take),
+        }
+    }
+
     fn free(&mut self, state: &CagedState) -> Result<(), Obstruction> {
         self.task.free(state)
     }

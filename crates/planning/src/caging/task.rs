@@ -49,6 +49,18 @@ pub trait ArticulatedTask {
         self.solutions(step, grasp, near)
     }
 
+    /// Shows those of the [`candidates`](Self::candidates) near to `near`, nearest first, until `take` says that it takes one.
+    /// Whether it did.
+    fn take_candidate(
+        &mut self,
+        step: usize,
+        grasp: usize,
+        near: &[f64],
+        take: &mut dyn FnMut(Vec<f64>) -> bool,
+    ) -> bool {
+        self.candidates(step, grasp, Some(near)).into_iter().any(take)
+    }
+
     /// Whether a candidate is free.
     fn free(&mut self, _: &CagedState) -> Result<(), Obstruction> {
         Ok(())

@@ -2,6 +2,7 @@
 
 use robotc_core::ids::Idx;
 use robotc_core::task::{Article, Goal};
+use robotc_core::trajectory::TrajectoryPoint;
 use robotc_core::{BodyIdx, Configuration, Trajectory};
 use thiserror::Error;
 
@@ -9,9 +10,9 @@ use super::options::ManipulationOptions;
 use super::plan::{ArticleMotion, Choice, Event, Held, OpenChoice, Plan, Segment, SegmentKind};
 use super::problem::{Manipulation, allowed_sink, gripper_links, motion_limits};
 use crate::caging::Cage;
-use crate::edge::{EdgeChecker, Obstruction};
+use crate::edge::EdgeChecker;
 use crate::mechanism::Mechanism;
-use crate::scene::{Along, ArticleChecker, Grip, RobotChecker, Rules, Scene};
+use crate::scene::{Along, Grip, MovingArticle, RobotChecker, Rules, Scene};
 use crate::space::{Axis, Space};
 use crate::timing::{TimeLaw, jerk_use, limit_use};
 
@@ -212,31 +213,6 @@ fn replay(
     Ok(checker.states())
 }
 
-/// How far everything may still move from the state that was looked at last.
-#[derive(Default)]
-struct Room {
-    left: f64,
-    at: Option<Vec<f64>>,
-}
-
-impl Room {
-    /// Looks at the next state of a motion, unless its clearance where it was looked at last proves it free.
-    fn look<C: EdgeChecker>(&mut self, checker: &mut C, next: Vec<f64>) -> Result<(), Obstruction> {
-        if !checker.space().contains(&next) {
-            return Err(Obstruction::Bounds);
-        }
-        self.left -= match &self.at {
-            None => f64::INFINITY,
-            Some(at) => checker.travel(&at.iter().zip(&next).map(|(a, b)| b - a).collect::<Vec<_>>()),
-        };
-        if self.left <= 0.0 {
-            self.left = checker.state(&next)?;
-        }
-        self.at = Some(next);
-        Ok(())
-    }
-}
-
 /// Where a segment begins.
 struct Situation<'s> {
     scene: &'s Scene,
@@ -272,11 +248,10 @@ fn replay_article(
         return wrong("the article's joint neither turns nor slides");
     };
     let joints = replay_space(problem, trajectory);
-    let first_obstacle = problem.task.objects.len();
     let (scene, dofs, step) = (begins.scene, trajectory.dofs(), options.certified_step);
-    let of_article = (article, first_obstacle);
-    let mut checker = ArticleChecker::new(scene, &joints, dofs, of_article, begins.q, rules, step);
-    let mut room = Room::default();
+    let moving = MovingArticle::new(scene, article, problem.task.objects.len());
+    let space = moving.space(&joints);
+    let mut checker = RobotChecker::with_article(scene, &space, (dofs, moving), begins.q, rules, step);
     let arm = problem.arm_at(begins.q);
     let opens = values.end()[0] > values.start()[0];
     let cages: Vec<&Cage> =
@@ -296,9 +271,22 @@ fn replay_article(
         if !cages.iter().any(|cage| near(&cage)) {
             return Err((time, "the gripper leaves the cage".into()));
         }
-        room.look(&mut checker, at).map_err(|by| (time, checker.describe(by)))?;
     }
+    let both = together(trajectory, values);
+    checker.all_along(&Along::new(&both)).map_err(|(time, by)| (time, checker.describe(by)))?;
     Ok(checker.states())
+}
+
+/// Two motions with the same times as one.
+fn together(one: &Trajectory, other: &Trajectory) -> Trajectory {
+    let knot = |(one, other): (&TrajectoryPoint, &TrajectoryPoint)| TrajectoryPoint {
+        positions: [one.positions.as_slice(), &other.positions].concat(),
+        velocities: [one.velocities.as_slice(), &other.velocities].concat(),
+        accelerations: [one.accelerations.as_slice(), &other.accelerations].concat(),
+    };
+    let knots = one.knots().iter().zip(other.knots()).map(knot).collect();
+    let (dofs, names) = ([one.dofs(), other.dofs()].concat(), [one.names(), other.names()].concat());
+    Trajectory::new(dofs, names, one.times().to_vec(), knots).expect("both have these times")
 }
 
 /// The space of the joints that a trajectory moves.

@@ -6,7 +6,7 @@ use robotc_core::{Configuration, DofIdx, Trajectory};
 use super::driving::Drive;
 use super::plan::{ArticleMotion, Event, Held, Segment, SegmentKind};
 use super::problem::{GoalContext, motion_limits};
-use crate::scene::{ArticleChecker, RobotChecker, Rules, Scene};
+use crate::scene::{RobotChecker, Rules, Scene};
 use crate::timing::{MotionLimits, time_path};
 
 /// Turns paths into segments, one after the other.
@@ -98,7 +98,7 @@ impl<'c, 'a> Maker<'c, 'a> {
     /// A motion of arm and fingers (`dofs`, named `names`) and an article at once: states of `checker`.
     pub(super) fn with_article(
         &mut self,
-        checker: &mut ArticleChecker<'_>,
+        checker: &mut RobotChecker<'_>,
         path: &[Vec<f64>],
         (dofs, names): (Vec<DofIdx>, Vec<String>),
         (number, article): (usize, &Article),

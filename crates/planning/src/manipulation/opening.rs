@@ -27,7 +27,7 @@ use crate::explore::{ExploreOptions, FixedMotion, make_way};
 use crate::goal::FixedGoals;
 use crate::grasp::Grasp;
 use crate::mechanism::{Mechanism, MechanismMotion};
-use crate::scene::{ArticleChecker, RobotChecker, Scene};
+use crate::scene::{MovingArticle, RobotChecker, Scene};
 
 /// From where to where an article moves.
 #[derive(Debug, Clone, Copy)]
@@ -73,9 +73,10 @@ pub(super) fn plan_opening(
     let grasps: Vec<CageGrasp> = usable.iter().map(|cage| cage.grasp.clone()).collect();
     let dofs: Vec<DofIdx> = [cx.problem.arm.dofs(), cx.gripper().dofs.as_slice()].concat();
     let joints = with_fingers_space(cx.problem.arm.space(), cx.finger_space);
-    let first_obstacle = cx.problem.task.objects.len();
+    let moving = MovingArticle::new(scene, article, cx.problem.task.objects.len());
+    let space = moving.space(&joints);
     let (rules, resolution) = (cx.touching(), cx.options.fine_resolution);
-    let checker = ArticleChecker::new(scene, &joints, &dofs, (article, first_obstacle), q, rules, resolution);
+    let checker = RobotChecker::with_article(scene, &space, (&dofs, moving), q, rules, resolution);
     let (rest, steps) =
         (cx.arm_values(q), article_steps(&mechanism, way.from, way.to, cx.options.caging.shift, &grasps));
     let task = CagedObject::new(cx.problem.arm, &grasps, steps, checker, &rest, cx.options.caging);
@@ -208,7 +209,7 @@ struct Opening<'c, 'a, 't> {
     cages: Vec<&'t Cage>,
     /// At the start.
     world_from_part: Pose,
-    task: CagedObject<'t, ArticleChecker<'t>>,
+    task: CagedObject<'t, RobotChecker<'t>>,
     /// Grips still to be looked at, the next one last.
     order: Vec<usize>,
     /// Configurations of the present grip still to be tried, the next one last.

@@ -5,6 +5,7 @@
 //! back and forth added up.
 
 use robotc_core::Trajectory;
+use robotc_core::geom::Otherwise;
 
 use super::RobotChecker;
 use super::checker::ROOM;
@@ -153,7 +154,8 @@ impl RobotChecker<'_> {
                 let needed = travels[self.pairs.row(pair)] - slack;
                 // Room that would not be enough is not worth finding.
                 let far = if needed <= farthest { needed } else { 0.0 };
-                let room = self.pairs.room(self.scene, &self.rules, &self.poses, pair, far);
+                let room =
+                    self.pairs.room(self.scene, &self.rules, &self.poses, pair, far, Otherwise::Anything);
                 if room.map_err(|touch| (time, touch.into()))? < needed {
                     open.push(pair as u32);
                 }

@@ -1,9 +1,10 @@
 //! The edge checker of a robot in a scene.
 
+use robotc_core::geom::Otherwise;
 use robotc_core::{Configuration, DofIdx, LinkPoses};
 
 use super::pairs::Pairs;
-use super::{Movers, Rules, Scene};
+use super::{Movers, MovingArticle, Rules, Scene};
 use crate::constraint::Constraint;
 use crate::edge::{Blocked, EdgeChecker, Obstruction};
 use crate::space::Space;
@@ -19,6 +20,7 @@ pub struct RobotChecker<'a> {
     pub(super) resolution: f64,
     pub(super) rules: Rules,
     constraint: Option<&'a dyn Constraint>,
+    article: Option<MovingArticle<'a>>,
     /// Clearance beyond this is not looked for.
     room: f64,
     /// For each row of the pairs, its pace; found when a clearance is asked for.
@@ -62,7 +64,19 @@ impl<'a> RobotChecker<'a> {
         rules: Rules,
         resolution: f64,
     ) -> Self {
-        let (pairs, bounds) = Pairs::new(scene, dofs, &rules);
+        Self::of(scene, space, (dofs, None), q, rules, resolution)
+    }
+
+    /// The same beside an article whose joint is the last coordinate, if there is one.
+    pub(super) fn of(
+        scene: &'a Scene,
+        space: &'a Space,
+        (dofs, article): (&'a [DofIdx], Option<MovingArticle<'a>>),
+        q: &Configuration,
+        rules: Rules,
+        resolution: f64,
+    ) -> Self {
+        let (pairs, bounds) = Pairs::new(scene, dofs, article.as_ref(), &rules);
         Self {
             pairs,
             bounds,
@@ -72,6 +86,7 @@ impl<'a> RobotChecker<'a> {
             resolution,
             rules,
             constraint: None,
+            article,
             room: ROOM * resolution,
             paces: None,
             q: q.clone(),
@@ -113,14 +128,6 @@ impl<'a> RobotChecker<'a> {
         self.states
     }
 
-    /// Whether a state is valid, without its clearance.
-    pub fn is_free(&mut self, q: &[f64]) -> Result<(), Obstruction> {
-        let room = std::mem::replace(&mut self.room, 0.0);
-        let outcome = self.state(q);
-        self.room = room;
-        outcome.map(|_| ())
-    }
-
     /// Puts the robot where it is a fraction of the way along an edge.
     fn place_along(&mut self, from: &[f64], fraction: f64, work: &mut Work) {
         work.at.clear();
@@ -130,8 +137,14 @@ impl<'a> RobotChecker<'a> {
 
     pub(super) fn place(&mut self, q: &[f64]) {
         self.states += 1;
-        self.q.set(self.dofs, q);
+        let joints = &q[..self.dofs.len()];
+        if let (Some(article), Some(&value)) = (&mut self.article, q.get(joints.len())) {
+            let robot_from_world = self.scene.world_from_robot.inverse();
+            article.at(value).for_each(|(body, pose)| self.pairs.place(body, &(robot_from_world * pose)));
+        }
+        self.q.set(self.dofs, joints);
         self.scene.kinematics.link_poses(&self.q, &mut self.poses);
+        self.pairs.arrange(self.scene, &self.rules, &self.poses);
     }
 
     /// Whether the states of an edge satisfy the constraint: its end, and as many in between as its size asks for.
@@ -170,7 +183,14 @@ impl<'a> RobotChecker<'a> {
                 let needed = half * work.travels[self.pairs.row(pair as usize)] - slack;
                 // Room that would not be enough is not worth finding.
                 let far = if needed <= farthest { needed } else { 0.0 };
-                let room = self.pairs.room(self.scene, &self.rules, &self.poses, pair as usize, far);
+                let room = self.pairs.room(
+                    self.scene,
+                    &self.rules,
+                    &self.poses,
+                    pair as usize,
+                    far,
+                    Otherwise::Anything,
+                );
                 let room = room.map_err(|touch| Blocked { fraction: middle, by: touch.into() })?;
                 if room < needed {
                     work.open.push(pair);
@@ -226,7 +246,7 @@ impl EdgeChecker for RobotChecker<'_> {
         self.place(q);
         if self.room == 0.0 {
             for pair in 0..self.pairs.len() {
-                self.pairs.room(self.scene, &self.rules, &self.poses, pair, 0.0)?;
+                self.pairs.room(self.scene, &self.rules, &self.poses, pair, 0.0, Otherwise::Anything)?;
             }
             return Ok(0.0);
         }
@@ -234,10 +254,24 @@ impl EdgeChecker for RobotChecker<'_> {
         let mut clearance = self.room;
         for pair in 0..self.pairs.len() {
             let pace = paces[self.pairs.row(pair)];
-            let room = self.pairs.room(self.scene, &self.rules, &self.poses, pair, clearance * pace)?;
+            let room = self.pairs.room(
+                self.scene,
+                &self.rules,
+                &self.poses,
+                pair,
+                clearance * pace,
+                Otherwise::Roughly,
+            )?;
             clearance = clearance.min(room / pace);
         }
         Ok(clearance)
+    }
+
+    fn is_free(&mut self, q: &[f64]) -> Result<(), Obstruction> {
+        let room = std::mem::replace(&mut self.room, 0.0);
+        let outcome = self.state(q);
+        self.room = room;
+        outcome.map(|_| ())
     }
 
     fn travel(&self, difference: &[f64]) -> f64 {

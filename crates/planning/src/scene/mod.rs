@@ -7,6 +7,7 @@
 
 mod along;
 mod article;
+mod between;
 mod checker;
 mod mobile;
 mod pairs;
@@ -17,14 +18,15 @@ mod shape;
 use std::sync::Arc;
 
 use nalgebra::Point3;
-use robotc_core::geom::{ConvexPart, ConvexParts, contact, distance, within};
+use robotc_core::geom::{ConvexPart, ConvexParts, Otherwise};
 use robotc_core::ids::Idx;
 use robotc_core::model::Geometry;
 use robotc_core::world::World;
 use robotc_core::{BodyIdx, Configuration, Kinematics, LinkIdx, LinkPoses, Pose, TypedVec};
 
 pub(crate) use along::Along;
-pub use article::ArticleChecker;
+pub use article::MovingArticle;
+use between::{Keeps, between};
 pub use checker::RobotChecker;
 pub use mobile::MobileChecker;
 pub(crate) use shape::PlacedPile;
@@ -247,13 +249,9 @@ impl Scene {
         let other_from_one = world_from_other.inv_mul(&world_from_one);
         let mut deepest: f64 = 0.0;
         let one_from_other = other_from_one.inverse();
-        for a in one.cover() {
-            for b in &other.parts {
-                let found = contact(&a.part, &other_from_one, &b.part, &Pose::identity(), 0.0);
-                deepest = deepest.max(found.map_or(0.0, |c| c.depth));
-            }
-            for b in &other.piles {
-                deepest = deepest.max(b.pile.depth(&a.part, &b.seen_by(&one_from_other)));
+        for part in one.cover() {
+            for against in other.solids() {
+                deepest = deepest.max(against.depth(&part.part, &other_from_one, &one_from_other));
             }
         }
         Some(deepest)
@@ -288,21 +286,20 @@ impl Scene {
         let mut poses = LinkPoses::default();
         self.kinematics.link_poses(q, &mut poses);
         let body = &self.bodies[body];
-        let touches =
-            |link: &LinkIdx| {
-                let body_from_link = body.body_from_world * self.world_from_robot * poses.root_from(*link);
-                let parts = &self.links[*link].parts;
-                parts.iter().any(|part| {
-                    let near = |other: &shape::Part| {
-                        within(&part.part, &body_from_link, &other.part, &Pose::identity(), gap)
-                    };
-                    let link_from_body = || body_from_link.inverse();
-                    body.shape.parts.iter().any(near)
-                        || body.shape.piles.iter().any(|other| {
-                            other.pile.is_within(&part.part, &other.seen_by(&link_from_body()), gap)
-                        })
-                })
-            };
+        let touches = |link: &LinkIdx| {
+            let body_from_link = body.body_from_world * self.world_from_robot * poses.root_from(*link);
+            let shape = &self.links[*link];
+            between(
+                shape,
+                &body.shape,
+                &body_from_link,
+                Keeps::Margin(gap),
+                0.0,
+                Otherwise::Anything,
+                &mut None,
+            )
+            .is_none()
+        };
         links.iter().copied().filter(touches).collect()
     }
 
@@ -350,44 +347,6 @@ impl Scene {
         self.one_against_bodies(&placed, 0.0, depth, 1.0, &mut 0.0)
     }
 
-    /// Whether a body, where it is, is farther than `margin` metres from all others but those `beside` it; if so, its clearance,
-    /// cut at `room`.
-    pub(crate) fn body_clear(
-        &self,
-        body: BodyIdx,
-        beside: impl Fn(BodyIdx) -> bool,
-        margin: f64,
-        room: f64,
-    ) -> Result<f64, Touch> {
-        let Body { shape, world_from_body, .. } = &self.bodies[body];
-        let placed = Placed { shape, pose: *world_from_body, number: self.links.len() + body.index() };
-        let depth = |other| (other == body || beside(other)).then_some(f64::INFINITY);
-        let mut clearance = room;
-        self.one_against_bodies(&placed, margin, depth, 1.0, &mut clearance)?;
-        Ok(clearance)
-    }
-
-    /// Whether some links touch some bodies; if not, the clearance, cut at `room`.
-    pub(crate) fn links_beside(
-        &self,
-        links: &[LinkIdx],
-        poses: &LinkPoses,
-        bodies: impl Iterator<Item = BodyIdx> + Clone,
-        room: f64,
-    ) -> Result<f64, Touch> {
-        let mut clearance = room;
-        for &link in links {
-            let pose = self.world_from_robot * poses.root_from(link);
-            let placed = Placed { shape: &self.links[link], pose, number: link.index() };
-            for body in bodies.clone() {
-                let Body { shape, world_from_body, .. } = &self.bodies[body];
-                let number = self.links.len() + body.index();
-                compare(&placed, &Placed { shape, pose: *world_from_body, number }, 1.0, &mut clearance)?;
-            }
-        }
-        Ok(clearance)
-    }
-
     /// Whether links touch each other or the held body; if not, the clearance, cut at `room`.
     pub(crate) fn against_self(
         &self,
@@ -431,58 +390,28 @@ impl Scene {
     ) -> Result<(), Touch> {
         let centre = mover.pose * mover.shape.centre;
         for (index, body) in self.bodies.enumerate() {
-            let touch = || Touch(mover.number as u16, (self.links.len() + index.index()) as u16);
             let gap = body.shape.bounds.distance_to(&(body.body_from_world * centre)) - mover.shape.radius;
-            if gap > margin + *clearance * pace || body.shape.is_empty() {
+            let far = *clearance * pace;
+            if gap > margin + far || body.shape.is_empty() {
                 continue;
             }
-            let depth = depth(index);
-            if depth == Some(f64::INFINITY) {
-                continue;
-            }
-            let margin = if depth.is_some() { 0.0 } else { margin };
+            let keeps = match depth(index) {
+                Some(f64::INFINITY) => continue,
+                Some(depth) => Keeps::Depth(depth),
+                None => Keeps::Margin(margin),
+            };
             let body_from_mover = body.body_from_world * mover.pose;
-            let mover_from_body = body_from_mover.inverse();
-            for part in mover.shape.cover() {
-                let part_centre = body_from_mover * part.centre;
-                for other in &body.shape.parts {
-                    let far = margin + *clearance * pace;
-                    if other.bounds.distance_to(&part_centre) - part.radius > far
-                        || !within(&part.part, &body_from_mover, &other.part, &Pose::identity(), far)
-                    {
-                        continue;
-                    }
-                    let gap = distance(&part.part, &body_from_mover, &other.part, &Pose::identity()).distance;
-                    let touches = match depth {
-                        None => gap <= margin,
-                        Some(depth) => {
-                            gap == 0.0
-                                && contact(&part.part, &body_from_mover, &other.part, &Pose::identity(), 0.0)
-                                    .is_some_and(|c| c.depth > depth)
-                        }
-                    };
-                    if touches {
-                        return Err(touch());
-                    }
-                    *clearance = clearance.min((gap - margin) / pace);
-                }
-                for other in &body.shape.piles {
-                    let far = margin + *clearance * pace;
-                    if other.bounds.distance_to(&part_centre) - part.radius > far {
-                        continue;
-                    }
-                    let seen = other.seen_by(&mover_from_body);
-                    let gap = other.pile.gap(&part.part, &seen, far + FARTHER);
-                    let touches = match depth {
-                        None => gap <= margin && other.pile.is_within(&part.part, &seen, margin),
-                        Some(depth) => gap == 0.0 && other.pile.depth(&part.part, &seen) > depth,
-                    };
-                    if touches {
-                        return Err(touch());
-                    }
-                    *clearance = clearance.min((gap - margin).max(0.0) / pace);
-                }
-            }
+            let room = between(
+                mover.shape,
+                &body.shape,
+                &body_from_mover,
+                keeps,
+                far,
+                Otherwise::Roughly,
+                &mut None,
+            )
+            .ok_or_else(|| Touch(mover.number as u16, (self.links.len() + index.index()) as u16))?;
+            *clearance = clearance.min(room / pace);
         }
         Ok(())
     }
@@ -508,9 +437,6 @@ impl Movers {
     }
 }
 
-/// Gaps are looked for this far beyond what matters, metres, so that none is not the same as one of zero.
-const FARTHER: f64 = 1e-6;
-
 /// A shape at one place; the number is for messages.
 struct Placed<'a> {
     shape: &'a Shape,
@@ -524,34 +450,9 @@ fn compare(a: &Placed<'_>, b: &Placed<'_>, pace: f64, clearance: &mut f64) -> Re
     if (centres.0 - centres.1).norm() - a.shape.radius - b.shape.radius > *clearance * pace {
         return Ok(());
     }
-    let b_from_a = b.pose.inv_mul(&a.pose);
-    let a_from_b = b_from_a.inverse();
-    for part in a.shape.cover() {
-        let centre = b_from_a * part.centre;
-        for other in &b.shape.parts {
-            let far = *clearance * pace;
-            if other.bounds.distance_to(&centre) - part.radius > far
-                || !within(&part.part, &b_from_a, &other.part, &Pose::identity(), far)
-            {
-                continue;
-            }
-            let gap = distance(&part.part, &b_from_a, &other.part, &Pose::identity()).distance;
-            if gap == 0.0 {
-                return Err(Touch(a.number as u16, b.number as u16));
-            }
-            *clearance = clearance.min(gap / pace);
-        }
-        for other in &b.shape.piles {
-            let far = *clearance * pace;
-            if other.bounds.distance_to(&centre) - part.radius > far {
-                continue;
-            }
-            let gap = other.pile.gap(&part.part, &other.seen_by(&a_from_b), far + FARTHER);
-            if gap == 0.0 {
-                return Err(Touch(a.number as u16, b.number as u16));
-            }
-            *clearance = clearance.min(gap / pace);
-        }
-    }
+    let (b_from_a, far) = (b.pose.inv_mul(&a.pose), *clearance * pace);
+    let room = between(a.shape, b.shape, &b_from_a, Keeps::Margin(0.0), far, Otherwise::Roughly, &mut None)
+        .ok_or(Touch(a.number as u16, b.number as u16))?;
+    *clearance = clearance.min(room / pace);
     Ok(())
 }

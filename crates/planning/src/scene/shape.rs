@@ -2,8 +2,10 @@
 
 use nalgebra::{Point3, Vector3};
 use robotc_core::Pose;
-use robotc_core::geom::{Aabb, ConvexPart, ConvexParts, Pile, box_part};
+use robotc_core::geom::{self, Aabb, ConvexPart, ConvexParts, Pile, RoomAsked, box_part, contact};
 use robotc_core::model::Geometry;
+
+use super::between::Hint;
 
 /// One part with its bounds.
 #[derive(Debug, Clone)]
@@ -22,6 +24,13 @@ pub(crate) struct PlacedPile {
     pub(crate) body_from_pile: Pose,
     /// In the frame of the body.
     pub(super) bounds: Aabb,
+}
+
+/// One of the things that a body is made of.
+#[derive(Clone, Copy)]
+pub(super) enum Solid<'s> {
+    Part(&'s Part),
+    Pile(&'s PlacedPile),
 }
 
 /// The parts and piles of one body with bounds of all.
@@ -81,6 +90,11 @@ impl Shape {
         self.parts.iter().chain(&self.boxes)
     }
 
+    /// What it is made of.
+    pub(super) fn solids(&self) -> impl Iterator<Item = Solid<'_>> {
+        self.parts.iter().map(Solid::Part).chain(self.piles.iter().map(Solid::Pile))
+    }
+
     fn points(&self) -> impl Iterator<Item = &Point3<f64>> {
         self.cover().flat_map(|part| part.part.points())
     }
@@ -88,6 +102,51 @@ impl Shape {
     /// Largest distance of a point from the origin of the frame, metres.
     pub(super) fn radius_about_origin(&self) -> f64 {
         self.points().map(|p| p.coords.norm()).fold(0.0, f64::max)
+    }
+}
+
+impl Solid<'_> {
+    /// A box around it, in the frame of the body.
+    pub(super) fn bounds(&self) -> &Aabb {
+        match self {
+            Self::Part(part) => &part.bounds,
+            Self::Pile(pile) => &pile.bounds,
+        }
+    }
+
+    /// How far away a part of another body is, metres: see [`room`](geom::room()).
+    pub(super) fn room(
+        &self,
+        part: &ConvexPart,
+        body_from_part: &Pose,
+        part_from_body: &Pose,
+        asked: &RoomAsked,
+        hint: &mut Hint,
+    ) -> Option<f64> {
+        match self {
+            Self::Part(own) => {
+                let apart = geom::room(&own.part, part, body_from_part, asked)?;
+                *hint = Some(apart.direction.into_inner());
+                Some(apart.gap)
+            }
+            Self::Pile(own) => {
+                // A pile is looked at from the part.
+                let along = asked.along.map(|along| -(part_from_body * along));
+                let asked = RoomAsked { along, ..*asked };
+                let room = own.pile.room(part, &own.seen_by(part_from_body), &asked)?;
+                *hint = room.along.map(|along| -(body_from_part * along)).or(*hint);
+                Some(room.gap)
+            }
+        }
+    }
+
+    /// How deep it and a part of another body are in each other, metres.
+    pub(super) fn depth(&self, part: &ConvexPart, body_from_part: &Pose, part_from_body: &Pose) -> f64 {
+        match self {
+            Self::Part(own) => contact(part, body_from_part, &own.part, &Pose::identity(), 0.0)
+                .map_or(0.0, |found| found.depth),
+            Self::Pile(own) => own.pile.depth(part, &own.seen_by(part_from_body)),
+        }
     }
 }
 
