@@ -1,4 +1,4 @@
-//! `cargo xtask ik-zoo [FOLDER] [POSES] [FILTER] [--singular=N] [--types=N]`: compiles and proves inverse kinematics for every arm of a
+//! `cargo xtask ik-zoo [FOLDER] [POSES] [FILTER] [--singular=N] [--types=N] [--calibrated=N]`: compiles and proves inverse kinematics for every arm of a
 //! folder, prints the tables and stores them as `docs/campaigns/zoo.md`.
 
 use std::process::{Command, Stdio};

@@ -1,10 +1,11 @@
 //! Compiles every arm of a folder with an `INDEX.tsv`, proves it, and prints a table in Markdown: what was solved of each set,
 //! then class and time of each arm, or the reason why it is refused. `cargo xtask ik-zoo` stores it.
 //!
-//! `cargo run --release -p robotc-ikgen --example zoo -- FOLDER [POSES] [FILTER] [--detail] [--no-snap] [--singular=N] [--types=N]`: only
+//! `cargo run --release -p robotc-ikgen --example zoo -- FOLDER [POSES] [FILTER] [--detail] [--no-snap] [--singular=N] [--types=N]
+//! [--calibrated=N]`: only
 //! arms whose name contains FILTER; details are all sets, the search and the program; without snapping arms are solved as they are
 //! described; the random set has POSES, the singular ones N, or as many; a second table has all parameterisations of some arms, N random
-//! poses each. Robots of the thesis that have no URDF are those of the tests.
+//! poses each, a third one calibrated arms. POSES may be 0 for these alone. Robots of the thesis that have no URDF are those of the tests.
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
@@ -17,9 +18,15 @@ use robotc_ikgen::report::{ProofOptions, Report, SetReport, prove, prove_set};
 use robotc_ikgen::{GoalType, Options, compile};
 
 #[allow(dead_code)]
-#[path = "../tests/ikgen/arms.rs"]
+#[path = "../../tests/ikgen/arms.rs"]
 mod arms;
+mod calibrated;
+#[path = "../collection/mod.rs"]
 mod collection;
+mod types;
+
+use calibrated::Calibrated;
+use types::Types;
 
 fn main() {
     let (options, arguments): (Vec<String>, Vec<String>) =
@@ -28,67 +35,37 @@ fn main() {
     let poses = arguments.get(1).and_then(|n| n.parse().ok()).unwrap_or(200);
     let filter = arguments.get(2).map_or("", String::as_str);
     let mut arms: Vec<(String, Report)> = Vec::new();
-    let mut types: Vec<(String, Vec<String>)> = Vec::new();
     let number = |option: &str| options.iter().find_map(|o| o.strip_prefix(option)?.parse::<usize>().ok());
-    let of_types = number("--types=");
+    let mut of_types = number("--types=").map(Types::new);
+    let mut of_calibrated = number("--calibrated=").map(Calibrated::new);
+    let clock = Instant::now();
+    let now = || clock.elapsed().as_secs_f64();
     for (name, chain) in collection::arms(folder, filter) {
         eprintln!("{name}");
-        if let Some(poses) = of_types.filter(|_| OF_TYPES.contains(&name.as_str())) {
-            types.push((name.clone(), GoalType::ALL.map(|goal| parameterised(&chain, goal, poses)).to_vec()));
+        if let Some(table) = &mut of_types {
+            table.add(&name, &chain);
         }
-        arms.push((name, arm(&chain, poses, &options)));
+        if let Some(table) = &mut of_calibrated {
+            table.add(&name, &chain, &now);
+        }
+        if poses > 0 {
+            arms.push((name, arm(&chain, poses, &options)));
+        }
     }
-    for chain in arms::of_the_thesis().into_iter().filter(|chain| chain.name.contains(filter)) {
+    let of_the_thesis = if poses > 0 { arms::of_the_thesis() } else { Vec::new() };
+    for chain in of_the_thesis.into_iter().filter(|chain| chain.name.contains(filter)) {
         eprintln!("{}", chain.name);
         arms.push((chain.name.clone(), arm(&chain, poses, &options)));
     }
-    summary(&arms, poses);
-    table(&arms);
-    if let Some(poses) = of_types {
-        table_of_types(&types, poses);
+    if poses > 0 {
+        summary(&arms, poses);
+        table(&arms);
     }
-}
-
-/// Arms of which all parameterisations are tried: four, five, six and seven joints, of different classes.
-const OF_TYPES: [&str; 10] = [
-    "trossen_px100",
-    "kawasaki_duaro",
-    "neuronics_katana_450_6m90a",
-    "fanuc_lrmate200ic5h",
-    "kuka_kr5_arc",
-    "ur_ur5e",
-    "ufactory_xarm6",
-    "franka_panda",
-    "kuka_lwr4",
-    "fetch_fetch",
-];
-
-/// What came of a parameterisation of an arm.
-fn parameterised(chain: &SerialChain, goal: GoalType, poses: usize) -> String {
-    let Ok(compiled) = compile(chain, &Options { goal, ..Options::default() }) else { return "-".into() };
-    let clock = Instant::now();
-    let now = || clock.elapsed().as_secs_f64();
-    let report = prove(&compiled, 0.0, &ProofOptions { poses, seed: 3 }, &now);
-    let Some(set) = report.set("random") else { return "-".into() };
-    let wrong = if set.wrong > 0 { format!(", {} wrong", set.wrong) } else { String::new() };
-    if set.recovered == set.poses && set.solved == set.poses {
-        format!("all{wrong}")
-    } else {
-        format!("{} / {}{wrong}", set.solved, set.recovered)
+    if let Some(table) = of_types {
+        table.print();
     }
-}
-
-fn table_of_types(arms: &[(String, Vec<String>)], poses: usize) {
-    println!("\n## Parameterisations\n");
-    println!(
-        "{poses} random poses each: *all*, where each was solved and its joint vector among the answers, else how many were solved and how \
-         many recovered; - where the type does not suit the chain.\n"
-    );
-    let names: Vec<&str> = arms.iter().map(|(name, _)| name.as_str()).collect();
-    println!("| type | {} |\n|---|{}", names.join(" | "), "---|".repeat(names.len()));
-    for (k, goal) in GoalType::ALL.into_iter().enumerate() {
-        let cells: Vec<&str> = arms.iter().map(|(_, cells)| cells[k].as_str()).collect();
-        println!("| {} | {} |", goal.name(), cells.join(" | "));
+    if let Some(table) = of_calibrated {
+        table.print();
     }
 }
 
