@@ -153,7 +153,8 @@ fn bases_among_obstacles_are_clear_and_reach(map: &ReachabilityMap, arm: &ArmAlo
     for _ in 0..300 {
         let world_from_tip = pose(knowledge, &mut rng);
         let mass = bases.mass(0, &world_from_tip);
-        let Some([x, y, yaw]) = bases.draw(0, &world_from_tip, &mut rng) else { continue };
+        let Some(stand) = bases.draw(0, &world_from_tip, &mut rng) else { continue };
+        let [x, y, yaw] = stand.base;
         assert!(mass > 0.0);
         count += 1;
         let placement = Placement { position: [x, y], yaw, target: 0, mount: 0 };

@@ -16,7 +16,8 @@ use robotc_planning::budget::Budget;
 use robotc_planning::edge::Obstruction;
 use robotc_planning::goal::{GoalDraw, GoalSampler};
 use robotc_planning::placement::{
-    BaseDistribution, BasePlacement, PlacementArm, PlacementOptions, PlacementProblem, Prism, UniformBases,
+    BaseDistribution, BasePlacement, PlacementArm, PlacementOptions, PlacementProblem, Prism, Stand,
+    UniformBases,
 };
 
 /// Trials of each scene in a block; the distributions take turns by blocks.
@@ -109,8 +110,8 @@ impl PlacementProblem for Problem<'_> {
         if clear { Ok(()) } else { Err(Obstruction::Contact(1)) }
     }
 
-    fn solutions(&mut self, _: usize, base: &[f64; 3], world_from_tip: &Pose) -> Vec<Vec<f64>> {
-        let world_from_base = placement(base).world_from_mobile() * self.mobile_from_base;
+    fn solutions(&mut self, _: usize, stand: &Stand, world_from_tip: &Pose) -> Vec<Vec<f64>> {
+        let world_from_base = placement(&stand.base).world_from_mobile() * self.mobile_from_base;
         let base_from_tip = world_from_base.inv_mul(world_from_tip);
         let world_from_root = world_from_base * self.base_from_root;
         let (arm, obstacles, order) = (self.arm, self.obstacles, &mut self.order);

@@ -11,12 +11,13 @@ use crate::arm::ArmModel;
 use crate::budget::Budget;
 use crate::edge::{EdgeChecker, Obstruction};
 use crate::goal::{GoalDraw, GoalSampler};
+use crate::lanes::{LaneChecker, LaneMemory, LaneRobot, Sight, Width};
 use crate::manipulation::{Manipulation, ManipulationOptions};
 use crate::placement::{
     BaseDistribution, BasePlacement, InverseSamples, InverseSamplesOptions, PlacementArm, PlacementOptions,
-    PlacementProblem, UniformBases,
+    PlacementProblem, Stand, UniformBases,
 };
-use crate::scene::{MobileChecker, Rules};
+use crate::scene::{Carriage, MobileChecker, Rules, Scene};
 
 /// The figures of one way to draw places.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -40,7 +41,7 @@ pub struct PlacementReport {
     pub scene: String,
     /// Grasps that may be reached.
     pub grasps: usize,
-    /// Milliseconds to draw the samples of the arm, once for a robot.
+    /// Milliseconds to draw the samples of the arm, and to cover its links with spheres, once for a robot.
     pub prepare_ms: f64,
     /// Inverse reachability, and anywhere within reach.
     pub bases: Vec<PlacementFigures>,
@@ -66,9 +67,12 @@ pub fn measure_placement(
     let began = now();
     let samples =
         InverseSamples::of_arms(&[&arm], &InverseSamplesOptions::default(), &mut Seed::new(1).rng());
-    let prepare_ms = 1e3 * (now() - began);
     let [_, floor] = start_and_floor(problem, options);
     let floor = ([floor[0], floor[1]], [floor[2], floor[3]]);
+    let height = problem.scene.world_from_robot().translation.z;
+    let scene = problem.scene.standing_at(Pose::translation(0.0, 0.0, height));
+    let robot = LaneRobot::of_scene(&scene, arm.dofs(), &task.start).with_hand(&hand.links).on_wheels(floor);
+    let prepare_ms = 1e3 * (now() - began);
     let rules = Rules { margin: planner.margin, gripper: hand.links.clone(), ..Rules::default() };
     let moved: Vec<LinkIdx> = {
         let model = &task.robot.model;
@@ -76,6 +80,17 @@ pub fn measure_placement(
         model.links().indices().filter(moves).collect()
     };
     let arms = [PlacementArm { cost: 1.0, grasps: grasps.clone() }];
+    let whole = MobileChecker::new(
+        problem.scene,
+        floor,
+        arm.space(),
+        arm.dofs(),
+        &task.start,
+        rules.clone(),
+        planner.resolution,
+    );
+    let carriage = whole.carriage(&|link| !moved.contains(&link));
+    let (mut memory, rest) = (LaneMemory::default(), task.start.select(arm.dofs()));
     let mut runs: [Vec<(bool, f64, u32)>; 2] = Default::default();
     for seed in 0..options.seeds {
         for (number, runs) in runs.iter_mut().enumerate() {
@@ -83,17 +98,10 @@ pub fn measure_placement(
             let mut uniform = UniformBases { radius: arm.reach() };
             let bases: &mut dyn BaseDistribution = if number == 0 { &mut inverse } else { &mut uniform };
             let start = now();
-            let checker = MobileChecker::new(
-                problem.scene,
-                floor,
-                arm.space(),
-                arm.dofs(),
-                &task.start,
-                rules.clone(),
-                planner.resolution,
-            );
-            let rest = task.start.select(arm.dofs());
-            let mut cell = Cell { arm: &arm, checker, moved: &moved, rest };
+            let lanes =
+                LaneChecker::with_rules(&robot, &scene, whole.space(), &rules, Width::widest(), &mut memory);
+            let (scratch, scene) = (IkSolutions::new(), problem.scene);
+            let mut cell = Cell { arm: &arm, scene, carriage: &carriage, lanes, rest: &rest, scratch };
             let mut sampler =
                 BasePlacement::new(&mut cell, bases, &arms, PlacementOptions::default(), Seed::new(seed));
             let found = loop {
@@ -132,10 +140,12 @@ fn figures(runs: &[(bool, f64, u32)]) -> PlacementFigures {
 /// The robot on wheels among the things of the task.
 struct Cell<'a> {
     arm: &'a ArmModel,
-    checker: MobileChecker<'a>,
-    /// Links that the arm moves; the others go with the base.
-    moved: &'a [LinkIdx],
-    rest: Vec<f64>,
+    scene: &'a Scene,
+    /// Links that stand still on the base.
+    carriage: &'a Carriage,
+    lanes: LaneChecker<'a>,
+    rest: &'a [f64],
+    scratch: IkSolutions,
 }
 
 impl PlacementProblem for Cell<'_> {
@@ -145,21 +155,32 @@ impl PlacementProblem for Cell<'_> {
     }
 
     fn base_is_free(&mut self, _: usize, base: &[f64; 3]) -> Result<(), Obstruction> {
-        let moved = self.moved;
-        self.checker.base_is_free(base, &|link| !moved.contains(&link))
+        self.carriage.is_free(self.scene, base)
     }
 
-    fn solutions(&mut self, _: usize, base: &[f64; 3], world_from_tool: &Pose) -> Vec<Vec<f64>> {
+    fn sift(&mut self, stands: &[Stand]) -> Vec<Option<Obstruction>> {
+        let state = |stand: &Stand| [&stand.base[..], stand.posture.as_deref().unwrap_or(self.rest)].concat();
+        let states: Vec<Vec<f64>> = stands.iter().map(state).collect();
+        let touched = |sight| if let Sight::Blocked(by) = sight { Some(by) } else { None };
+        self.lanes.glances(states.iter().map(Vec::as_slice)).into_iter().map(touched).collect()
+    }
+
+    fn solutions(&mut self, _: usize, stand: &Stand, world_from_tool: &Pose) -> Vec<Vec<f64>> {
+        let base = &stand.base;
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), base[2]);
         let world_from_base = Pose::from_parts(Translation3::new(base[0], base[1], 0.0), turn);
-        let free: Vec<f64> = self.arm.free_variables().iter().map(|&v| self.rest[v]).collect();
-        let scratch = &mut IkSolutions::new();
-        let (found, _) =
-            self.arm.inverse(&world_from_base.inv_mul(world_from_tool), &free, &self.rest, scratch);
+        let near = stand.posture.as_deref().unwrap_or(self.rest);
+        let free: Vec<f64> = self.arm.free_variables().iter().map(|&v| near[v]).collect();
+        let base_from_tool = world_from_base.inv_mul(world_from_tool);
+        let (found, _) = self.arm.inverse(&base_from_tool, &free, near, &mut self.scratch);
         found.into_iter().map(|q| [&base[..], &q].concat()).collect()
     }
 
     fn is_free(&mut self, q: &[f64]) -> Result<(), Obstruction> {
-        self.checker.state(q).map(|_| ())
+        self.lanes.state(q).map(|_| ())
+    }
+
+    fn first_free(&mut self, all: &[Vec<f64>]) -> (Option<usize>, Vec<Obstruction>) {
+        self.lanes.first_free(all.iter().map(Vec::as_slice))
     }
 }

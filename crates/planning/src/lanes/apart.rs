@@ -89,6 +89,13 @@ impl Apart {
         open.contains(&false).then_some(Self { axes, open_below })
     }
 
+    /// The same table where so many other coordinates come first.
+    pub(super) fn behind(&self, others: usize) -> Self {
+        let mut table = self.clone();
+        table.axes.iter_mut().for_each(|axis| axis.column += others);
+        table
+    }
+
     /// Whether the two stay apart all along the motion by `difference` from `from`. "Yes" is certain.
     pub(super) fn holds(&self, from: &[f64], difference: &[f64]) -> bool {
         self.holds_within(from, difference, 0.0, 1.0)
@@ -96,6 +103,12 @@ impl Apart {
                 let share = 1.0 / PIECES as f64;
                 self.holds_within(from, difference, i as f64 * share, (i + 1) as f64 * share)
             })
+    }
+
+    /// Whether the two are apart in a state. "Yes" is certain.
+    pub(super) fn holds_at(&self, state: &[f64]) -> bool {
+        // Nothing is moved, so that any difference will do.
+        self.holds_within(state, state, 0.0, 0.0)
     }
 
     /// Whether the two stay apart within a stretch of the motion, from one fraction of it to another. "Yes" is certain.

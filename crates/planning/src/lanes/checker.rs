@@ -24,9 +24,9 @@ use crate::space::Space;
 pub struct LaneChecker<'a> {
     pub(super) robot: &'a LaneRobot,
     pub(super) scene: &'a Scene,
-    space: &'a Space,
-    width: Width,
-    obstacles: Vec<Obstacle>,
+    pub(super) space: &'a Space,
+    pub(super) width: Width,
+    pub(super) obstacles: Vec<Obstacle>,
     /// The body of the scene that each obstacle belongs to.
     pub(super) owners: Vec<BodyIdx>,
     /// For each group of bodies, the obstacles that it can come near to, and how far it keeps from them: metres, negative where it
@@ -57,7 +57,11 @@ pub struct LaneStatistics {
 #[derive(Debug, Default)]
 pub struct LaneMemory {
     pub(super) motion: Motion,
-    scratch: Scratch,
+    pub(super) scratch: Scratch,
+    /// Joint values of unrelated configurations, step by step.
+    pub(super) joints: Vec<f32>,
+    /// What is close in some of them, a bit for each.
+    pub(super) crowded: Vec<(Close, u32)>,
     /// Stretches of the edge still to be looked at: middle and half length.
     queue: Vec<(f32, f32)>,
     /// Stretches that the spheres do not settle, with what is close there.

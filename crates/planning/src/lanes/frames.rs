@@ -25,11 +25,18 @@ pub(super) struct Frames<'a, S: Simd> {
     centres: &'a mut [S::f32s],
     stamps: &'a mut [u32],
     call: u32,
-    /// Of each joint, its value at the start and its change over the whole motion.
-    steps: &'a [(f32, f32)],
-    along: Lanes<S>,
+    joints: Joints<'a, S>,
     /// Frames that are placed.
     placed: usize,
+}
+
+/// Where the joints are.
+#[derive(Clone, Copy)]
+enum Joints<'a, S: Simd> {
+    /// Along a motion: of each joint, its value at the start and its change over the whole motion; and how far.
+    Along(&'a [(f32, f32)], Lanes<S>),
+    /// Anywhere: values of each joint.
+    Each(&'a [S::f32s]),
 }
 
 /// Values for each frame.
@@ -46,6 +53,22 @@ impl<'a, S: Simd> Frames<'a, S> {
         along: Lanes<S>,
         memory: &'a mut FrameMemory,
     ) -> Self {
+        Self::new(simd, robot, Joints::Along(steps, along), memory)
+    }
+
+    /// The frames of configurations that have nothing to do with each other; `values` has, for each joint, where it is in each lane.
+    #[inline(always)]
+    pub(super) fn place_each(
+        simd: S,
+        robot: &'a LaneRobot,
+        values: &'a [f32],
+        memory: &'a mut FrameMemory,
+    ) -> Self {
+        Self::new(simd, robot, Joints::Each(S::as_simd_f32s(values).0), memory)
+    }
+
+    #[inline(always)]
+    fn new(simd: S, robot: &'a LaneRobot, joints: Joints<'a, S>, memory: &'a mut FrameMemory) -> Self {
         let lanes = S::F32_LANES;
         let (poses, centres) = ((robot.steps.len() + 1) * FRAME * lanes, robot.spheres.len() * 3 * lanes);
         // Others may need more of it.
@@ -65,8 +88,7 @@ impl<'a, S: Simd> Frames<'a, S> {
             centres: S::as_mut_simd_f32s(&mut memory.centres[..centres]).0,
             stamps: &mut memory.stamps,
             call: memory.call,
-            steps,
-            along,
+            joints,
             placed: 1,
         };
         let (zero, one) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 1.0));
@@ -81,13 +103,16 @@ impl<'a, S: Simd> Frames<'a, S> {
     /// Places all frames up to one.
     #[inline(always)]
     pub(super) fn reach(&mut self, frame: usize) {
-        let Self { robot, steps, along, .. } = *self;
+        let Self { robot, joints, .. } = *self;
         let zero = Lanes::splat(self.simd, 0.0);
         while self.placed <= frame {
             let i = self.placed - 1;
             self.placed += 1;
-            let (step, (start, change)) = (&robot.steps[i], steps[i]);
-            let value = Lanes::splat(self.simd, start) + along * change;
+            let step = &robot.steps[i];
+            let value = match joints {
+                Joints::Along(steps, along) => Lanes::splat(self.simd, steps[i].0) + along * steps[i].1,
+                Joints::Each(values) => Lanes::new(self.simd, values[i]),
+            };
             let [x, y, z] = self.columns(step.parent);
             // A column of the joint's rotation, and its shift, are mixtures of the parent's columns.
             let [row_x, row_y, row_z] = step.rows;

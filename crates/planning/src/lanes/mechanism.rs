@@ -33,7 +33,7 @@ pub struct LaneRobot {
     /// The body of the scene that the robot holds.
     pub(super) held: Option<BodyIdx>,
     /// For each step, how far it slides at most.
-    extents: Vec<f64>,
+    pub(super) extents: Vec<f64>,
     /// How far rounding can move a computed point at most, metres.
     pub(super) rounding: f64,
 }
@@ -256,7 +256,10 @@ impl LaneRobot {
                 next: first as u32 + node.next,
             });
         }
-        let chain = self.chain(frame, &frame_from_body, corners);
+        let points: Vec<Point3<f64>> = corners.iter().map(|p| frame_from_body * p).collect();
+        let reach = points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
+        let beside = points.iter().map(|p| p.x.hypot(p.y)).fold(0.0, f64::max);
+        let chain = self.chain(frame, reach, beside);
         let spheres = first..self.spheres.len();
         self.bodies.push(Body { link, frame, group: 0, frame_from_body, spheres, chain });
         self.bodies.len() - 1
@@ -292,14 +295,11 @@ impl LaneRobot {
     }
 
     /// How far points of a body are from the axes that move it, at most and in any configuration: no farther than the bones
-    /// between are long.
-    fn chain(&self, frame: usize, frame_from_body: &Pose, corners: &[Point3<f64>]) -> Vec<(usize, f64)> {
-        let points: Vec<Point3<f64>> = corners.iter().map(|p| frame_from_body * p).collect();
+    /// between are long. In the body's own frame, they are no farther than `reach` from the origin, and than `beside` from the axis.
+    pub(super) fn chain(&self, frame: usize, mut reach: f64, mut beside: f64) -> Vec<(usize, f64)> {
         let mut chain = Vec::new();
+        // `reach` is from the origin of the frame reached so far.
         let mut at = frame;
-        // From the origin of the frame reached so far.
-        let mut reach = points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
-        let mut beside = points.iter().map(|p| p.x.hypot(p.y)).fold(0.0, f64::max);
         while at > 0 {
             let step = &self.steps[at - 1];
             chain.push((at - 1, if step.slides { 1.0 } else { beside }));
@@ -373,7 +373,7 @@ impl LaneRobot {
 
     /// A step turns what hangs on it by an angle that is known to about a millionth, and adds about as much by its own
     /// rounding; each such error moves a point by no more than the length of the arm.
-    fn rounding(&self) -> f64 {
+    pub(super) fn rounding(&self) -> f64 {
         const EACH_STEP: f64 = 6e-6;
         let reach = |body: &Body| body.chain.iter().map(|(_, distance)| *distance).fold(0.0, f64::max);
         let longest = self.bodies.iter().map(reach).fold(0.0, f64::max);
@@ -446,7 +446,14 @@ impl LaneRobot {
 }
 
 impl Step {
-    fn new(parent: usize, column: usize, factor: f64, offset: f64, slides: bool, pose: Pose) -> Self {
+    pub(super) fn new(
+        parent: usize,
+        column: usize,
+        factor: f64,
+        offset: f64,
+        slides: bool,
+        pose: Pose,
+    ) -> Self {
         let rotation = pose.rotation.to_rotation_matrix();
         let row = |i: usize| [0, 1, 2].map(|k| snapped(rotation.matrix()[(i, k)]));
         let shift = pose.translation.vector;
@@ -464,10 +471,14 @@ impl Step {
 
     /// Joint value at the start of a motion, brought near zero when it is an angle, and its change along the motion.
     pub(super) fn motion(&self, from: &[f64], difference: &[f64]) -> (f64, f64) {
-        let value = self.factor * from[self.column] + self.offset;
+        (self.value(from), self.factor * difference[self.column])
+    }
+
+    /// Joint value in a state, brought near zero when it is an angle.
+    pub(super) fn value(&self, state: &[f64]) -> f64 {
+        let value = self.factor * state[self.column] + self.offset;
         let far = !self.slides && value.abs() > PI;
-        let value = if far { value - TAU * (value / TAU).round() } else { value };
-        (value, self.factor * difference[self.column])
+        if far { value - TAU * (value / TAU).round() } else { value }
     }
 }
 
@@ -541,7 +552,7 @@ fn extents(kinematics: &Kinematics, steps: &[Step], dofs: &[DofIdx]) -> Vec<f64>
 }
 
 /// A rotation that takes the z axis onto `axis`.
-fn z_onto(axis: &Unit<Vector3<f64>>) -> UnitQuaternion<f64> {
+pub(super) fn z_onto(axis: &Unit<Vector3<f64>>) -> UnitQuaternion<f64> {
     let rotation = Rotation3::rotation_between(&Vector3::z(), axis)
         .unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
     UnitQuaternion::from_rotation_matrix(&rotation)

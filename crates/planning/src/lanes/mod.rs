@@ -18,11 +18,14 @@ mod mechanism;
 mod obstacle;
 mod pile;
 mod settle;
+mod states;
 mod suspects;
 #[cfg(test)]
 mod tests;
+mod wheels;
 mod width;
 
 pub use checker::{LaneChecker, LaneMemory, LaneStatistics};
 pub use mechanism::LaneRobot;
+pub use states::Sight;
 pub use width::Width;

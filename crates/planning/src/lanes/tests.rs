@@ -11,11 +11,11 @@ use robotc_core::model::{Geometry, Origin, Shape, TriMesh};
 use robotc_core::rng::Rng;
 use robotc_core::{BodyIdx, Configuration, Kinematics, LinkIdx, Pose, Robot, Seed, TypedVec, World};
 
-use super::{LaneChecker, LaneMemory, LaneRobot, Width};
+use super::{LaneChecker, LaneMemory, LaneRobot, Sight, Width};
 use crate::certify::certify_path;
 use crate::edge::{EdgeChecker, Obstruction, Patience, bisect_edge};
 use crate::manipulation::gripper_links;
-use crate::scene::{Grip, RobotChecker, Rules, Scene};
+use crate::scene::{Grip, MobileChecker, RobotChecker, Rules, Scene};
 use crate::space::{Axis, Space};
 use crate::testbed;
 
@@ -148,6 +148,78 @@ fn states_are_as_exact_geometry_says() {
         }
     }
     assert!(free > 150 && touching > 150, "{free} {touching}");
+}
+
+#[test]
+fn states_side_by_side_are_as_one_by_one() {
+    let (covers, mut rng) = (covers(), Seed::new(27).rng());
+    let (mut free, mut touching, mut seen) = (0, 0, 0);
+    for trial in 0..4 {
+        let bench = bench(trial % 2 == 0, &covers, &mut rng);
+        // Some lanes stay empty, and one state is out of bounds.
+        let mut states: Vec<Vec<f64>> = (0..101).map(|_| bench.space.sample(&mut rng)).collect();
+        states[40][1] = 9.0;
+        let rows = || states.iter().map(Vec::as_slice);
+        let mut exact = bench.exact();
+        let expected: Vec<bool> = states.iter().map(|q| exact.state(q).is_ok()).collect();
+        let mut answers = Vec::new();
+        for width in Width::all() {
+            let mut memory = LaneMemory::default();
+            let mut lanes = bench.lanes(width, &mut memory);
+            let found = lanes.states(rows());
+            assert!(found.iter().map(Result::is_ok).eq(expected.iter().copied()));
+            assert_eq!(found[40], Err(Obstruction::Bounds));
+            let glances = lanes.glances(rows());
+            let sure = |sight: &Sight| matches!(sight, Sight::Blocked(_));
+            assert!(glances.iter().zip(&expected).all(|(sight, free)| !(sure(sight) && *free)));
+            seen += glances.iter().filter(|sight| sure(sight)).count();
+            let first: Vec<_> =
+                states.chunks(20).map(|some| lanes.first_free(some.iter().map(Vec::as_slice))).collect();
+            for (some, (first, before)) in expected.chunks(20).zip(&first) {
+                assert_eq!(*first, some.iter().position(|free| *free));
+                assert_eq!(before.len(), first.unwrap_or(some.len()));
+            }
+            answers.push((found, glances, first));
+        }
+        assert!(answers.windows(2).all(|two| two[0] == two[1]), "lanes do not matter");
+        free += expected.iter().filter(|free| **free).count();
+        touching += expected.iter().filter(|free| !**free).count();
+    }
+    assert!(free > 100 && touching > 100 && seen > touching / 2, "{free} {touching} {seen}");
+}
+
+#[test]
+fn a_robot_on_wheels_is_where_its_base_is() {
+    let (covers, mut rng) = (covers(), Seed::new(28).rng());
+    let (mut free, mut touching) = (0, 0);
+    for trial in 0..3 {
+        let bench = bench(trial % 2 == 0, &covers, &mut rng);
+        let floor = ([-1.5, -1.2], [1.0, 2.0]);
+        let (dofs, rules) = (&bench.robot.arms[0].dofs, Rules { margin: 0.004, ..Rules::default() });
+        let q = bench.world.q();
+        let mut exact = MobileChecker::new(&bench.scene, floor, &bench.space, dofs, q, rules.clone(), 0.01);
+        let space = exact.space().clone();
+        let scene = bench.scene.standing_at(Pose::translation(0.0, 0.0, 0.05));
+        let robot = bench.lanes.on_wheels(floor);
+        let mut memory = LaneMemory::default();
+        let mut lanes = LaneChecker::with_rules(&robot, &scene, &space, &rules, Width::widest(), &mut memory);
+        let states: Vec<Vec<f64>> = (0..120).map(|_| space.sample(&mut rng)).collect();
+        let found = lanes.states(states.iter().map(Vec::as_slice));
+        for (q, found) in states.iter().zip(&found) {
+            assert_eq!(exact.state(q).is_ok(), found.is_ok(), "{q:?}");
+            if found.is_ok() { free += 1 } else { touching += 1 }
+        }
+        // Motions of the base are seen, too.
+        for two in states.windows(2) {
+            if lanes.state(&two[0]).is_ok() && lanes.edge(&two[0], &two[1]).is_ok() {
+                for i in 0..=20 {
+                    let q = space.interpolate(&two[0], &two[1], f64::from(i) / 20.0);
+                    assert!(exact.state(&q).is_ok(), "{two:?} {i}");
+                }
+            }
+        }
+    }
+    assert!(free > 80 && touching > 80, "{free} {touching}");
 }
 
 #[test]

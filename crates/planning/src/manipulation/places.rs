@@ -16,7 +16,7 @@ use super::stretch::{fine_checker, state_is_free};
 use crate::edge::{EdgeChecker, Obstruction};
 use crate::grasp::Grasp;
 use crate::mechanism::Mechanism;
-use crate::placement::{BaseDistribution, PlacementProblem};
+use crate::placement::{BaseDistribution, PlacementProblem, Stand};
 use crate::scene::{Grip, RobotChecker, Scene};
 
 /// Draws of a place before the map of the arm's reach is not asked any more.
@@ -148,18 +148,18 @@ impl BaseDistribution for ReachedBases<'_, '_> {
         1.0
     }
 
-    fn draw(&mut self, _: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<[f64; 3]> {
+    fn draw(&mut self, _: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<Stand> {
         let grasp = self.targets.grasps.iter().position(|grasp| grasp == world_from_tool)?;
         let mut last = None;
         for _ in 0..DRAWS {
             let base = self.around(world_from_tool, rng);
             last = Some(base);
             if self.density(&base, world_from_tool) > 0.0 && self.puts_down(&base, grasp, rng) {
-                return Some(base);
+                return Some(Stand::at(base));
             }
         }
         // A coarse map may be wrong.
-        last
+        last.map(Stand::at)
     }
 }
 
@@ -242,7 +242,8 @@ impl PlacementProblem for Standing<'_, '_> {
         checker.state(base).map(|_| ())
     }
 
-    fn solutions(&mut self, _: usize, base: &[f64; 3], world_from_tool: &Pose) -> Vec<Vec<f64>> {
+    fn solutions(&mut self, _: usize, stand: &Stand, world_from_tool: &Pose) -> Vec<Vec<f64>> {
+        let base = &stand.base;
         if let Some(grasp) = self.targets.grasps.iter().position(|grasp| grasp == world_from_tool) {
             self.object = self.targets.object[grasp];
         }

@@ -1,6 +1,7 @@
 //! Places of the base from which a pose of the tool is likely to be within reach.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use nalgebra::{UnitVector3, Vector3};
 use robotc_core::Pose;
@@ -9,15 +10,31 @@ use serde::{Deserialize, Serialize};
 
 use crate::arm::ArmModel;
 
+/// A place to stand that may be good.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stand {
+    /// x, y and heading of the base.
+    pub base: [f64; 3],
+    /// Joint values of the arm that put the tool somewhere near the pose asked for, where such are known.
+    pub posture: Option<Vec<f64>>,
+}
+
+impl Stand {
+    /// A place of which nothing else is known.
+    pub fn at(base: [f64; 3]) -> Self {
+        Self { base, posture: None }
+    }
+}
+
 /// A distribution of bases on the floor for a pose of the tool: what inverse reachability knows.
 pub trait BaseDistribution {
     /// How much of its workspace the arm has for this pose; zero when it is out of reach from everywhere. Poses are chosen in
-    /// proportion to it.
+    /// proportion to it. Asked once for a pose, and only when it may be the next.
     fn mass(&mut self, arm: usize, world_from_tool: &Pose) -> f64;
 
-    /// x, y and heading of a base, drawn the more often the more configurations reach the pose from there; `None` when it is
-    /// out of reach from everywhere, or when none was found this time and another pose may be luckier.
-    fn draw(&mut self, arm: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<[f64; 3]>;
+    /// A place, drawn the more often the more configurations reach the pose from there; `None` when it is out of reach from
+    /// everywhere, or when none was found this time and another pose may be luckier.
+    fn draw(&mut self, arm: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<Stand>;
 }
 
 /// Any place within a radius around the tool, any heading: what informed distributions are compared with.
@@ -32,11 +49,11 @@ impl BaseDistribution for UniformBases {
         1.0
     }
 
-    fn draw(&mut self, _: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<[f64; 3]> {
+    fn draw(&mut self, _: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<Stand> {
         let at = world_from_tool.translation.vector;
         let (distance, angle) = (self.radius * rng.unit().sqrt(), rng.range(-PI, PI));
         let heading = rng.range(-PI, PI);
-        Some([at.x + distance * libm::cos(angle), at.y + distance * libm::sin(angle), heading])
+        Some(Stand::at([at.x + distance * libm::cos(angle), at.y + distance * libm::sin(angle), heading]))
     }
 }
 
@@ -65,70 +82,87 @@ impl Default for InverseSamplesOptions {
 ///
 /// Random joint values crowd where the arm is singular; samples are weighted by the manipulability of the arm (Yoshikawa,
 /// 1985), the volume of tool motions that unit joint motions make, so that all poses that the arm reaches count the same.
+///
+/// Each place comes with the posture of its sample, so that it can be given up before inverse kinematics when the arm would be
+/// in an obstacle. Cheap to clone: samples are shared.
 #[derive(Debug, Clone)]
 pub struct InverseSamples {
     options: InverseSamplesOptions,
-    arms: Vec<Vec<Sample>>,
-    /// Samples that serve poses asked for before, each with the sum of weights up to it: drawing asks for the same poses
-    /// again and again.
-    last: Vec<(usize, Pose, Vec<(usize, f64)>)>,
+    arms: Arc<Vec<Samples>>,
+    /// Samples that serve poses asked for before: drawing asks for the same poses again and again.
+    asked: Vec<Asked>,
 }
 
-#[derive(Debug, Clone)]
-struct Sample {
-    height: f64,
+/// Samples of an arm by their height. What decides whether they serve a pose is stored by itself.
+#[derive(Debug)]
+struct Samples {
+    heights: Vec<f64>,
     /// The vertical in the tool frame.
-    up_in_tool: UnitVector3<f64>,
+    ups: Vec<UnitVector3<f64>>,
+    samples: Vec<Sample>,
+}
+
+#[derive(Debug)]
+struct Sample {
     base_from_tool: Pose,
     weight: f64,
+    posture: Vec<f64>,
+}
+
+/// Samples that serve a pose.
+#[derive(Debug, Clone)]
+struct Asked {
+    arm: usize,
+    world_from_tool: Pose,
+    /// Position of each, and the sum of weights up to it.
+    found: Vec<(usize, f64)>,
 }
 
 impl InverseSamples {
     /// Samples of these arms, each given as it stands when the base is at the origin and looks along x.
     pub fn of_arms(arms: &[&ArmModel], options: &InverseSamplesOptions, rng: &mut Rng) -> Self {
         let sample = |arm: &ArmModel, rng: &mut Rng| {
-            let q = arm.space().sample(rng);
-            let base_from_tool = arm.world_from_tool(&q);
-            let jacobian = arm.tool_jacobian(&q);
-            let up = base_from_tool.rotation.inverse() * Vector3::z();
+            let posture = arm.space().sample(rng);
+            let jacobian = arm.tool_jacobian(&posture);
             Sample {
-                height: base_from_tool.translation.z,
-                up_in_tool: UnitVector3::new_normalize(up),
-                base_from_tool,
+                base_from_tool: arm.world_from_tool(&posture),
                 weight: (&jacobian * jacobian.transpose()).determinant().max(0.0).sqrt(),
+                posture,
             }
         };
         let of_arm = |arm: &&ArmModel| {
             let mut samples: Vec<Sample> = (0..options.count).map(|_| sample(arm, rng)).collect();
+            samples.retain(|sample| sample.weight > 0.0);
+            let height = |sample: &Sample| sample.base_from_tool.translation.z;
+            let up = |sample: &Sample| sample.base_from_tool.rotation.inverse() * Vector3::z_axis();
             // Those that serve a pose are a range of heights.
-            samples.sort_by(|a, b| a.height.total_cmp(&b.height));
-            samples
+            samples.sort_by(|a, b| height(a).total_cmp(&height(b)));
+            let (heights, ups) = (samples.iter().map(height).collect(), samples.iter().map(up).collect());
+            Samples { heights, ups, samples }
         };
-        let arms = arms.iter().map(of_arm).collect();
-        Self { options: *options, arms, last: Vec::new() }
+        let arms = Arc::new(arms.iter().map(of_arm).collect());
+        Self { options: *options, arms, asked: Vec::new() }
     }
 
     /// Samples that serve a pose, each with the sum of weights up to it.
     fn matches(&mut self, arm: usize, world_from_tool: &Pose) -> &[(usize, f64)] {
-        let known = self.last.iter().position(|(a, pose, _)| *a == arm && pose == world_from_tool);
-        let entry = known.unwrap_or_else(|| {
-            let up = UnitVector3::new_normalize(world_from_tool.rotation.inverse() * Vector3::z());
+        let known = |asked: &Asked| asked.arm == arm && asked.world_from_tool == *world_from_tool;
+        let at = self.asked.iter().position(known).unwrap_or_else(|| {
+            let up = world_from_tool.rotation.inverse() * Vector3::z_axis();
             let least = libm::cos(self.options.tilt);
-            let (samples, height) = (&self.arms[arm], world_from_tool.translation.z);
-            let first = samples.partition_point(|s| s.height < height - self.options.height);
-            let end = samples.partition_point(|s| s.height <= height + self.options.height);
-            let mut sum = 0.0;
-            let mut found = Vec::new();
-            for (i, sample) in samples.iter().enumerate().take(end).skip(first) {
-                if sample.weight > 0.0 && sample.up_in_tool.dot(&up) >= least {
-                    sum += sample.weight;
-                    found.push((i, sum));
-                }
-            }
-            self.last.push((arm, *world_from_tool, found));
-            self.last.len() - 1
+            let (all, height) = (&self.arms[arm], world_from_tool.translation.z);
+            let first = all.heights.partition_point(|h| *h < height - self.options.height);
+            let end = all.heights.partition_point(|h| *h <= height + self.options.height);
+            let serving = (first..end).filter(|&i| all.ups[i].dot(&up) >= least);
+            let summed = serving.scan(0.0, |sum, i| {
+                *sum += all.samples[i].weight;
+                Some((i, *sum))
+            });
+            let found = summed.collect();
+            self.asked.push(Asked { arm, world_from_tool: *world_from_tool, found });
+            self.asked.len() - 1
         });
-        &self.last[entry].2
+        &self.asked[at].found
     }
 }
 
@@ -138,15 +172,20 @@ impl BaseDistribution for InverseSamples {
         self.matches(arm, world_from_tool).last().map_or(0.0, |(_, sum)| sum / count)
     }
 
-    fn draw(&mut self, arm: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<[f64; 3]> {
+    fn draw(&mut self, arm: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<Stand> {
         let matches = self.matches(arm, world_from_tool);
         let (_, sum) = *matches.last()?;
         let at = sum * rng.unit();
-        let (sample, _) = matches[matches.partition_point(|(_, up_to)| *up_to <= at)];
-        let world_from_base = world_from_tool * self.arms[arm][sample].base_from_tool.inverse();
-        let ahead = world_from_base.rotation * Vector3::x();
-        let at = world_from_base.translation.vector;
+        let (sample, _) = matches[matches.partition_point(|(_, up_to)| *up_to <= at).min(matches.len() - 1)];
+        let Sample { base_from_tool, posture, .. } = &self.arms[arm].samples[sample];
+        let ahead = world_from_tool.rotation * (base_from_tool.rotation.inverse() * Vector3::x());
+        let heading = libm::atan2(ahead.y, ahead.x);
+        // The base stands upright where the tool is above the same point of the floor.
+        let (sine, cosine) = (libm::sin(heading), libm::cos(heading));
+        let (tool, reach) = (world_from_tool.translation.vector, base_from_tool.translation.vector);
         let spread = self.options.spread;
-        Some([at.x + spread * rng.normal(), at.y + spread * rng.normal(), libm::atan2(ahead.y, ahead.x)])
+        let x = tool.x - (cosine * reach.x - sine * reach.y) + spread * rng.normal();
+        let y = tool.y - (sine * reach.x + cosine * reach.y) + spread * rng.normal();
+        Some(Stand { base: [x, y, heading], posture: Some(posture.clone()) })
     }
 }

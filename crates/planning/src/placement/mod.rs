@@ -6,7 +6,7 @@ mod sampler;
 #[cfg(test)]
 mod tests;
 
-pub use distribution::{BaseDistribution, InverseSamples, InverseSamplesOptions, UniformBases};
+pub use distribution::{BaseDistribution, InverseSamples, InverseSamplesOptions, Stand, UniformBases};
 pub use posture::{NavigationPosture, PostureOptions, Prism, PrismBodies};
 pub use sampler::{
     BasePlacement, Placement, PlacementArm, PlacementOptions, PlacementProblem, PlacementRejections,

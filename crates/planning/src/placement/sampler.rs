@@ -7,7 +7,7 @@ use robotc_core::rng::Rng;
 use robotc_core::{Pose, Seed};
 use serde::{Deserialize, Serialize};
 
-use super::distribution::BaseDistribution;
+use super::distribution::{BaseDistribution, Stand};
 use crate::budget::{Budget, Interrupt};
 use crate::edge::Obstruction;
 use crate::goal::{GoalDraw, GoalSampler};
@@ -29,11 +29,30 @@ pub trait PlacementProblem {
     /// Whether the links that move with the base, but not with the arm, are free. Asked before any inverse kinematics.
     fn base_is_free(&mut self, arm: usize, base: &[f64; 3]) -> Result<(), Obstruction>;
 
-    /// Configurations of the whole robot within the limits, with the base at `base` and the tool at `world_from_tool`.
-    fn solutions(&mut self, arm: usize, base: &[f64; 3], world_from_tool: &Pose) -> Vec<Vec<f64>>;
+    /// Of places that come with a posture, what is certainly touched with it from each, if anything: these are not looked at any more.
+    /// Asked before anything else. Without a cheap answer there is none.
+    fn sift(&mut self, stands: &[Stand]) -> Vec<Option<Obstruction>> {
+        vec![None; stands.len()]
+    }
+
+    /// Configurations of the whole robot within the limits, with the base at a place and the tool at `world_from_tool`; those near
+    /// the posture first, where there is one.
+    fn solutions(&mut self, arm: usize, stand: &Stand, world_from_tool: &Pose) -> Vec<Vec<f64>>;
 
     /// Whether a configuration is free.
     fn is_free(&mut self, q: &[f64]) -> Result<(), Obstruction>;
+
+    /// The first of these configurations that is free, and what is in the way of those before it.
+    fn first_free(&mut self, all: &[Vec<f64>]) -> (Option<usize>, Vec<Obstruction>) {
+        let mut blocked = Vec::new();
+        for (i, q) in all.iter().enumerate() {
+            match self.is_free(q) {
+                Ok(()) => return (Some(i), blocked),
+                Err(by) => blocked.push(by),
+            }
+        }
+        (None, blocked)
+    }
 }
 
 /// Parameters of the sampling.
@@ -55,6 +74,13 @@ impl Default for PlacementOptions {
 /// So many draws that give no place count as one: they take that much less time.
 const UNDRAWN: u32 = 100;
 
+/// Places with a posture that are looked at together: as many as the widest lanes take.
+const TOGETHER: usize = 16;
+
+/// A posture is only near one that reaches, and what is in the way of the one may not be in the way of the other. So of every so many
+/// places one is tried in any case.
+const UNSIFTED: u32 = 128;
+
 /// What is behind a goal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Placement {
@@ -73,6 +99,8 @@ pub struct Placement {
 pub struct PlacementRejections {
     /// Places tried.
     pub places: u32,
+    /// Places from which the arm would certainly touch something in the posture that they came with.
+    pub sifted: u32,
     /// Grasps at which the gripper is not free.
     pub grasps: u32,
     /// Grasps that are out of reach from everywhere.
@@ -95,27 +123,52 @@ impl fmt::Display for PlacementRejections {
             f,
             "{} places tried; grasps not free: {}, out of reach: {}; bases not free: {}; no inverse kinematics: {}; \
              configurations not free: {}",
-            self.places, self.grasps, self.hopeless, self.bases, self.out_of_reach, self.configurations
+            self.places,
+            self.grasps,
+            self.hopeless,
+            self.bases,
+            self.out_of_reach,
+            self.sifted + self.configurations
         )
     }
 }
 
 /// Arms, grasps and places of the base, in proportion to how well the arms reach them; a sampler that never repeats a
 /// rejected grasp and can be resumed.
+///
+/// How well a grasp is reached is found when it is drawn for the first time, and then compared with the best one so far.
 pub struct BasePlacement<'a, P: ?Sized, D: ?Sized> {
     problem: &'a mut P,
     distribution: &'a mut D,
     arms: &'a [PlacementArm],
     options: PlacementOptions,
     rng: Rng,
-    /// Grasps that are left, as arm, number and weight.
-    left: Vec<(usize, usize, f64)>,
-    /// Whether each of them was found free.
-    checked: Vec<bool>,
+    left: Vec<Left>,
+    /// Places that came with a posture and are still to be tried, last one first.
+    stands: Vec<(usize, usize, Stand)>,
+    /// How many were drawn with a posture.
+    drawn: u32,
     /// What is behind the goals handed out, in their order.
     pub placements: Vec<Placement>,
     /// What was rejected so far.
     pub rejections: PlacementRejections,
+}
+
+/// What is left of an arm.
+struct Left {
+    arm: usize,
+    grasps: Vec<LeftGrasp>,
+    /// The largest mass that was found.
+    most: f64,
+}
+
+/// A grasp that was not rejected.
+struct LeftGrasp {
+    grasp: usize,
+    /// Once it is known.
+    mass: Option<f64>,
+    /// Whether the gripper was found free.
+    checked: bool,
 }
 
 impl<'a, P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> BasePlacement<'a, P, D> {
@@ -127,77 +180,136 @@ impl<'a, P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> BasePlaceme
         options: PlacementOptions,
         seed: Seed,
     ) -> Self {
-        let mut rejections = PlacementRejections::default();
-        let mut left = Vec::new();
-        for (number, arm) in arms.iter().enumerate() {
-            let masses: Vec<f64> = arm.grasps.iter().map(|g| distribution.mass(number, g)).collect();
-            let sum: f64 = masses.iter().sum();
-            for (grasp, mass) in masses.into_iter().enumerate() {
-                if mass > 0.0 {
-                    left.push((number, grasp, mass / sum / arm.cost.max(f64::MIN_POSITIVE)));
-                } else {
-                    rejections.hopeless += 1;
+        let grasps = |arm: &PlacementArm| {
+            let unknown = |grasp| LeftGrasp { grasp, mass: None, checked: false };
+            (0..arm.grasps.len()).map(unknown).collect()
+        };
+        let left =
+            arms.iter().enumerate().map(|(number, arm)| Left { arm: number, grasps: grasps(arm), most: 0.0 });
+        Self {
+            problem,
+            distribution,
+            arms,
+            options,
+            rng: seed.rng(),
+            left: left.filter(|left| !left.grasps.is_empty()).collect(),
+            stands: Vec::new(),
+            drawn: 0,
+            placements: Vec::new(),
+            rejections: PlacementRejections::default(),
+        }
+    }
+
+    /// Position of an arm among those that are left.
+    fn choose_arm(&mut self) -> usize {
+        if self.left.len() == 1 {
+            return 0;
+        }
+        let weight = |left: &Left| 1.0 / self.arms[left.arm].cost.max(f64::MIN_POSITIVE);
+        let mut at = self.rng.unit() * self.left.iter().map(weight).sum::<f64>();
+        let chosen = self.left.iter().position(|left| {
+            at -= weight(left);
+            at < 0.0
+        });
+        chosen.unwrap_or(self.left.len() - 1)
+    }
+
+    /// An arm and a grasp of it that the gripper may take; `None` when none are left.
+    fn choose(&mut self) -> Option<(usize, usize)> {
+        while !self.left.is_empty() {
+            let number = self.choose_arm();
+            let chosen = self.rng.below(self.left[number].grasps.len());
+            let left = &mut self.left[number];
+            let (arm, LeftGrasp { grasp, mass, checked }) = (left.arm, &mut left.grasps[chosen]);
+            let grasp = *grasp;
+            let world_from_tool = &self.arms[arm].grasps[grasp];
+            let known = *mass.get_or_insert_with(|| self.distribution.mass(arm, world_from_tool));
+            left.most = left.most.max(known);
+            let mut gone = known <= 0.0;
+            if gone {
+                self.rejections.hopeless += 1;
+            } else if self.rng.unit() * left.most > known {
+                continue;
+            } else if !*checked {
+                *checked = true;
+                if let Err(by) = self.problem.grasp_is_free(arm, grasp) {
+                    gone = true;
+                    self.rejections.grasps += 1;
+                    self.reject(by);
+                }
+            }
+            if !gone {
+                return Some((arm, grasp));
+            }
+            self.left[number].grasps.swap_remove(chosen);
+            if self.left[number].grasps.is_empty() {
+                self.left.swap_remove(number);
+            }
+        }
+        None
+    }
+
+    /// Another place with its arm and its grasp; `None` when none was drawn, or when none of those drawn is worth trying. Places
+    /// with a posture are drawn and sifted together.
+    fn next_stand(&mut self) -> Option<(usize, usize, Stand)> {
+        if self.stands.is_empty() {
+            self.draw_stands();
+        }
+        let next = self.stands.pop()?;
+        self.rejections.places += 1;
+        Some(next)
+    }
+
+    /// Draws places that are worth trying, last one first.
+    fn draw_stands(&mut self) {
+        let (mut stands, mut of) = (Vec::new(), Vec::new());
+        while stands.len() < TOGETHER {
+            let Some((arm, grasp)) = self.choose() else { break };
+            let world_from_tool = &self.arms[arm].grasps[grasp];
+            let Some(stand) = self.distribution.draw(arm, world_from_tool, &mut self.rng) else {
+                self.rejections.undrawn += 1;
+                break;
+            };
+            if stand.posture.is_none() && stands.is_empty() {
+                self.stands.push((arm, grasp, stand));
+                return;
+            }
+            stands.push(stand);
+            of.push((arm, grasp));
+        }
+        let touched = self.problem.sift(&stands);
+        for (((arm, grasp), stand), touched) in of.into_iter().zip(stands).zip(touched).rev() {
+            self.drawn = self.drawn.wrapping_add(1);
+            let in_any_case = self.drawn.is_multiple_of(UNSIFTED);
+            match touched.filter(|_| !in_any_case) {
+                None => self.stands.push((arm, grasp, stand)),
+                Some(by) => {
+                    self.rejections.places += 1;
+                    self.rejections.sifted += 1;
+                    self.reject(by);
                 }
             }
         }
-        let checked = vec![false; left.len()];
-        let placements = Vec::new();
-        Self { problem, distribution, arms, options, rng: seed.rng(), left, checked, placements, rejections }
-    }
-
-    /// A grasp in proportion to the weights.
-    fn choose(&mut self) -> usize {
-        let sum: f64 = self.left.iter().map(|g| g.2).sum();
-        let mut at = self.rng.unit() * sum;
-        for (i, grasp) in self.left.iter().enumerate() {
-            at -= grasp.2;
-            if at < 0.0 {
-                return i;
-            }
-        }
-        self.left.len() - 1
     }
 
     /// One place; a goal if it is one.
     fn try_place(&mut self) -> Option<Placement> {
-        let chosen = self.choose();
-        let (arm, grasp, _) = self.left[chosen];
-        if !self.checked[chosen] {
-            let free = self.problem.grasp_is_free(arm, grasp);
-            self.checked[chosen] = true;
-            if let Err(by) = free {
-                self.reject(by);
-                self.rejections.grasps += 1;
-                self.left.swap_remove(chosen);
-                self.checked.swap_remove(chosen);
-                return None;
-            }
-        }
-        let world_from_tool = &self.arms[arm].grasps[grasp];
-        let Some(base) = self.distribution.draw(arm, world_from_tool, &mut self.rng) else {
-            self.rejections.undrawn += 1;
-            return None;
-        };
-        self.rejections.places += 1;
+        let (arm, grasp, stand) = self.next_stand()?;
+        let base = stand.base;
         if let Err(by) = self.problem.base_is_free(arm, &base) {
             self.reject(by);
             self.rejections.bases += 1;
             return None;
         }
-        let solutions = self.problem.solutions(arm, &base, world_from_tool);
+        let solutions = self.problem.solutions(arm, &stand, &self.arms[arm].grasps[grasp]);
         if solutions.is_empty() {
             self.rejections.out_of_reach += 1;
         }
-        for q in solutions {
-            match self.problem.is_free(&q) {
-                Ok(()) => return Some(Placement { arm, grasp, base, q }),
-                Err(by) => {
-                    self.reject(by);
-                    self.rejections.configurations += 1;
-                }
-            }
-        }
-        None
+        let (free, blocked) = self.problem.first_free(&solutions);
+        self.rejections.configurations += blocked.len() as u32;
+        blocked.into_iter().for_each(|by| self.reject(by));
+        let q = solutions.into_iter().nth(free?)?;
+        Some(Placement { arm, grasp, base, q })
     }
 
     /// Draws until there is another place to stand: x, y and heading of the base. `None` when no more are drawn.
@@ -222,7 +334,7 @@ impl<P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> GoalSampler for
         while self.rejections.places < end {
             budget.check()?;
             let drawn = self.rejections.places.saturating_add(self.rejections.undrawn / UNDRAWN);
-            if self.left.is_empty() || drawn >= self.options.max_places {
+            if self.stands.is_empty() && (self.left.is_empty() || drawn >= self.options.max_places) {
                 return Ok(GoalDraw::Exhausted);
             }
             if let Some(placement) = self.try_place() {

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::{Point3, Translation3, UnitQuaternion, Vector3};
 use robotc_core::ik::IkSolutions;
-use robotc_core::{Kinematics, LinkIdx, Pose, Seed};
+use robotc_core::{Kinematics, Pose, Seed};
 
 use super::*;
 use crate::arm::ArmModel;
@@ -12,14 +12,15 @@ use crate::budget::{Budget, Interrupt};
 use crate::edge::{EdgeChecker, Obstruction, walk_path};
 use crate::goal::{GoalDraw, GoalSampler};
 use crate::rrt::{RrtConnect, RrtOptions};
-use crate::scene::{MobileChecker, Rules, Scene};
+use crate::scene::{Carriage, MobileChecker, Rules, Scene};
 use crate::testbed::{self, REST};
 
 /// The test arm, its base and gripper, among boxes.
 struct Cell<'a> {
     arm: &'a ArmModel,
     checker: MobileChecker<'a>,
-    base_links: Vec<LinkIdx>,
+    carriage: Carriage,
+    scene: &'a Scene,
     /// Grasps at which the gripper is not free.
     covered: Vec<usize>,
     asked: u32,
@@ -31,10 +32,10 @@ impl PlacementProblem for Cell<'_> {
         if self.covered.contains(&grasp) { Err(Obstruction::Contact(99)) } else { Ok(()) }
     }
     fn base_is_free(&mut self, _: usize, base: &[f64; 3]) -> Result<(), Obstruction> {
-        let links = &self.base_links;
-        self.checker.base_is_free(base, &|link| links.contains(&link))
+        self.carriage.is_free(self.scene, base)
     }
-    fn solutions(&mut self, _: usize, base: &[f64; 3], world_from_tool: &Pose) -> Vec<Vec<f64>> {
+    fn solutions(&mut self, _: usize, stand: &Stand, world_from_tool: &Pose) -> Vec<Vec<f64>> {
+        let base = &stand.base;
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), base[2]);
         let world_from_base = Pose::from_parts(Translation3::new(base[0], base[1], 0.0), turn);
         let base_from_tool = world_from_base.inv_mul(world_from_tool);
@@ -62,8 +63,9 @@ fn with_cell<R>(scene: &Scene, arm: &ArmModel, f: impl FnOnce(&mut Cell<'_>) -> 
     let floor = ([-1.0, -3.0], [5.0, 3.0]);
     let checker =
         MobileChecker::new(scene, floor, arm.space(), arm.dofs(), &testbed::rest(&robot), rules, 0.01);
-    let base_links = vec![robot.model.link_named("base").unwrap()];
-    f(&mut Cell { arm, checker, base_links, covered: vec![], asked: 0 })
+    let base = robot.model.link_named("base").unwrap();
+    let carriage = checker.carriage(&|link| link == base);
+    f(&mut Cell { arm, checker, carriage, scene, covered: vec![], asked: 0 })
 }
 
 /// Beside the thing on the counter, from above and from four sides.
@@ -244,7 +246,8 @@ impl PlacementProblem for Points {
     fn base_is_free(&mut self, _: usize, base: &[f64; 3]) -> Result<(), Obstruction> {
         self.toy.state(&base[..2]).map(|_| ())
     }
-    fn solutions(&mut self, _: usize, base: &[f64; 3], world_from_tool: &Pose) -> Vec<Vec<f64>> {
+    fn solutions(&mut self, _: usize, stand: &Stand, world_from_tool: &Pose) -> Vec<Vec<f64>> {
+        let base = &stand.base;
         let at = world_from_tool.translation.vector;
         let near = (at.x - base[0]).hypot(at.y - base[1]) <= 2.0;
         if near { vec![vec![base[0], base[1], at.x, at.y]] } else { vec![] }

@@ -80,28 +80,42 @@ impl<'a> MobileChecker<'a> {
         self.states
     }
 
-    /// Whether a base is free with the joints as they are in the configuration given, links for which `only` is false left
-    /// out: those that move with the base, but not with the arm, are checked first when a base is placed.
-    pub fn base_is_free(
-        &mut self,
-        base: &[f64; 3],
-        only: &dyn Fn(LinkIdx) -> bool,
-    ) -> Result<(), Obstruction> {
-        self.states += 1;
-        self.scene.kinematics.link_poses(&self.q, &mut self.poses);
+    /// The links for which `only` is true, with the joints as they are in the configuration given: those that move with the base, but
+    /// not with the arm, are checked first when a base is placed.
+    pub fn carriage(&self, only: &dyn Fn(LinkIdx) -> bool) -> Carriage {
+        let mut poses = LinkPoses::default();
+        self.scene.kinematics.link_poses(&self.q, &mut poses);
         let links = self.movers.links.iter().filter(|(link, _)| only(*link)).copied().collect();
         let movers = Movers { links, held: 1.0, ..Movers::default() };
         let rules = Rules { held: None, ..self.rules.clone() };
-        let robot = self.world_from_robot(base);
-        self.scene.against_bodies(&robot, &self.poses, &movers, &rules, 0.0)?;
-        Ok(())
+        Carriage { poses, movers, rules }
     }
 
     fn world_from_robot(&self, base: &[f64]) -> Pose {
-        let height = self.scene.world_from_robot.translation.z;
-        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), base[2]);
-        Pose::from_parts(Translation3::new(base[0], base[1], height), turn)
+        world_from_robot(self.scene, base)
     }
+}
+
+/// Links that stand still on a base that drives.
+pub struct Carriage {
+    poses: LinkPoses,
+    movers: Movers,
+    rules: Rules,
+}
+
+impl Carriage {
+    /// Whether these links are free in a scene with the base at x, y and heading.
+    pub fn is_free(&self, scene: &Scene, base: &[f64; 3]) -> Result<(), Obstruction> {
+        let robot = world_from_robot(scene, base);
+        scene.against_bodies(&robot, &self.poses, &self.movers, &self.rules, 0.0)?;
+        Ok(())
+    }
+}
+
+/// The base at x, y and heading, as high as the robot is in the scene.
+fn world_from_robot(scene: &Scene, base: &[f64]) -> Pose {
+    let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), base[2]);
+    Pose::from_parts(Translation3::new(base[0], base[1], scene.world_from_robot.translation.z), turn)
 }
 
 impl EdgeChecker for MobileChecker<'_> {

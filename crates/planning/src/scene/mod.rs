@@ -28,7 +28,7 @@ pub(crate) use along::Along;
 pub use article::MovingArticle;
 use between::{Keeps, between};
 pub use checker::RobotChecker;
-pub use mobile::MobileChecker;
+pub use mobile::{Carriage, MobileChecker};
 pub(crate) use shape::PlacedPile;
 use shape::Shape;
 
@@ -136,6 +136,16 @@ impl Scene {
     /// Where the robot stands.
     pub fn world_from_robot(&self) -> &Pose {
         &self.world_from_robot
+    }
+
+    /// The same scene with the robot elsewhere.
+    pub fn standing_at(&self, world_from_robot: Pose) -> Self {
+        Self { world_from_robot, ..self.clone() }
+    }
+
+    /// Pairs of links that are compared with each other.
+    pub(crate) fn self_pairs(&self) -> &[(LinkIdx, LinkIdx)] {
+        &self.self_pairs
     }
 
     /// Where a body is.

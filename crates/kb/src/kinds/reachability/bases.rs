@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use robotc_core::Pose;
 use robotc_core::rng::Rng;
-use robotc_planning::placement::{BaseDistribution, Prism};
+use robotc_planning::placement::{BaseDistribution, Prism, Stand};
 
 use super::floor::Floor;
 use super::map::{ReachabilityMap, Verdict};
@@ -118,11 +118,11 @@ impl BaseDistribution for MapBases<'_> {
         if self.poses[asked].radius.is_some() { 1.0 } else { 0.0 }
     }
 
-    fn draw(&mut self, arm: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<[f64; 3]> {
+    fn draw(&mut self, arm: usize, world_from_tool: &Pose, rng: &mut Rng) -> Option<Stand> {
         let at = self.asked(arm, world_from_tool);
         let asked = &self.poses[at];
         let radius = asked.radius?;
-        let base = |found: Placement| [found.position[0], found.position[1], found.yaw];
+        let stand = |found: Placement| Stand::at([found.position[0], found.position[1], found.yaw]);
         if asked.missed >= PATIENCE && asked.made.is_none() {
             self.poses[at].made = Some(self.make(asked, radius));
         }
@@ -131,10 +131,10 @@ impl BaseDistribution for MapBases<'_> {
             if rng.unit() >= *often {
                 return None;
             }
-            return placements.sample_where(rng, 100, |placement| self.is_clear(placement)).map(base);
+            return placements.sample_where(rng, 100, |placement| self.is_clear(placement)).map(stand);
         }
         let found = (0..TRIES).find_map(|_| self.try_one(asked, radius, rng));
         self.poses[at].missed = if found.is_some() { 0 } else { self.poses[at].missed + TRIES };
-        found.map(base)
+        found.map(stand)
     }
 }
