@@ -237,13 +237,27 @@ impl Session {
         Rules { margin, held: situation.held.clone(), gripper, ..Rules::default() }
     }
 
+    /// The robot for checks of its arm in lanes, all other joints as at the start; the links of the arm's gripper are its hand. Made when
+    /// it is asked for first.
+    pub fn lane_robot(&self) -> Arc<LaneRobot> {
+        let LinkShapes { parts, covers, pairs, at_start } = self.link_shapes();
+        let make = || {
+            let (task, dofs) = (self.task(), self.arm().dofs());
+            let gripper = task.robot.arms[task.arm].gripper;
+            let hand = gripper.map_or_else(Vec::new, |g| gripper_links(&task.robot, g));
+            let robot = LaneRobot::new(self.kinematics(), dofs, &task.start, parts, covers, pairs);
+            Arc::new(robot.with_hand(&hand))
+        };
+        at_start.get_or_init(make).clone()
+    }
+
     /// The robot for checks in lanes; `None` where states are more than free or not: a constraint holds for single states, and a
     /// start that is moved out of a contact asks how much room there is.
     fn lanes(&self, situation: &Situation, problem: &PlanningProblem) -> Option<Arc<LaneRobot>> {
         if problem.constraint.is_some() || problem.jitter.is_some() {
             return None;
         }
-        let LinkShapes { parts, covers, pairs, at_start } = self.link_shapes();
+        let LinkShapes { parts, covers, pairs, .. } = self.link_shapes();
         let (q, scene) = (&situation.q, &situation.scene);
         let gripper = self.rules(situation, 0.0).gripper;
         let make = |pairs: &[(LinkIdx, LinkIdx)]| {
@@ -251,7 +265,7 @@ impl Session {
             Arc::new(robot.with_hand(&gripper))
         };
         let robot = match problem.self_collisions {
-            true if problem.situation.joints.is_empty() => at_start.get_or_init(|| make(pairs)).clone(),
+            true if problem.situation.joints.is_empty() => self.lane_robot(),
             true => make(pairs),
             false => make(&[]),
         };

@@ -149,7 +149,8 @@ fn row(file: &std::path::Path, level: i64) -> Result<String, Box<dyn Error>> {
     eprintln!("mixed poses: {solved} of {} solved", mixed.len());
     eprintln!("{}", solutions(&arm, &map, &mut scratch));
     eprintln!("{}", placements(&arm, &map, &free));
-    scenes::rows(&spec.name, &arm, &map, reach.radius).iter().for_each(|row| eprintln!("{row}"));
+    let wheels = scenes::OnWheels::load(&known, &arm)?;
+    scenes::rows(&spec.name, &arm, &wheels, &map, reach.radius).iter().for_each(|row| eprintln!("{row}"));
 
     let [some, whole, _] = map.counts();
     let cells = map.grid.len();

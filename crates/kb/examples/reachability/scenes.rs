@@ -1,24 +1,36 @@
-//! Base placements among obstacles: bases drawn from a map against bases drawn uniformly from the disc of the arm's reach.
+//! Base placements among obstacles: bases drawn from a map, and from samples of the arm with their postures, against bases drawn
+//! uniformly from the disc of the arm's reach.
 //!
-//! Both go through the same sampler and the same checks, in this order: is the hand free at the grasp, is the footprint
-//! clear, does exact inverse kinematics with the same values of the free joints find a joint vector without self-collision
-//! with which no link touches an obstacle, among the first few. The map's side starts cold in each trial. Rates are by
-//! processor time.
+//! All go through the same sampler and the same checks, in this order: is the hand free at the grasp, is the footprint
+//! clear, does exact inverse kinematics find a joint vector with which no link touches another one or an obstacle, among the first
+//! few. The free joints take the same values, or that of the posture. All sides start cold in each trial. Rates are by processor
+//! time.
 
+use std::error::Error;
+use std::sync::Arc;
 use std::time::Instant;
 
 use nalgebra::{Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
-use robotc_core::geom::{ConvexParts, any_within, box_part};
-use robotc_core::{LinkIdx, Pose, Seed};
-use robotc_kb::kinds::ReachabilityMap;
+use robotc_core::geom::{ConvexParts, CoverOptions, SphereCover, any_within, box_part};
+use robotc_core::ik::IkSolutions;
+use robotc_core::model::{Geometry, Origin, Shape};
+use robotc_core::{Configuration, DofIdx, Kinematics, Pose, Seed, SerialChain, TypedVec, World};
+use robotc_ikgen::Solver;
+use robotc_kb::Knowledge;
 use robotc_kb::kinds::reachability::{ArmAlone, Floor, FreeValues, MapBases, MountedArm, Placement, Scratch};
+use robotc_kb::kinds::{ArmPairs, IkSolver, ReachabilityMap};
+use robotc_kb::project::OfArm;
+use robotc_planning::arm::ArmModel;
 use robotc_planning::budget::Budget;
 use robotc_planning::edge::Obstruction;
 use robotc_planning::goal::{GoalDraw, GoalSampler};
+use robotc_planning::lanes::{LaneChecker, LaneMemory, LaneRobot, Sight, Width};
 use robotc_planning::placement::{
-    BaseDistribution, BasePlacement, PlacementArm, PlacementOptions, PlacementProblem, Prism, Stand,
-    UniformBases,
+    BaseDistribution, BasePlacement, InverseSamples, InverseSamplesOptions, PlacementArm, PlacementOptions,
+    PlacementProblem, Prism, Stand, UniformBases,
 };
+use robotc_planning::scene::Scene as PlannedScene;
+use robotc_planning::space::{Axis, Space};
 
 /// Trials of each scene in a block; the distributions take turns by blocks.
 const TRIALS: u64 = 25;
@@ -34,8 +46,8 @@ const DISTANCE: f64 = 0.12;
 /// Values of each free joint that exact inverse kinematics tries.
 const EXACT: usize = 16;
 
-/// Solutions of a place that are tried against the furniture: where so many touch it, the others mostly do.
-const TRIED: u32 = 8;
+/// Solutions of a place that are tried: where so many touch something, the others mostly do. As many as the widest lanes take.
+const TRIED: usize = 16;
 
 /// A scene: where the object is, and boxes as size and centre; metres. What bases drive on is z = 0.
 struct Scene {
@@ -83,19 +95,101 @@ fn base() -> (Prism, Pose) {
     (Prism { footprint, heights: (0.0, top) }, Pose::translation(0.15, 0.0, top))
 }
 
+/// The arm as the lanes and the planners see it, its base where it is on what drives.
+pub(crate) struct OnWheels {
+    model: ArmModel,
+    /// The arm's mechanism on wheels.
+    driving: LaneRobot,
+    mobile_from_root: Pose,
+    space: Space,
+    samples: InverseSamples,
+}
+
+/// What drives stays within this of the origin, metres.
+const FLOOR: f64 = 3.0;
+
+impl OnWheels {
+    /// The first arm of a compiled robot.
+    pub(crate) fn load(known: &Knowledge, arm: &ArmAlone) -> Result<Self, Box<dyn Error>> {
+        let (_, mobile_from_base) = base();
+        let robot = known.graph().project().robot();
+        let kinematics = Kinematics::new(robot.model.clone());
+        let chain = SerialChain::between(&kinematics, robot.arms[0].base, robot.arms[0].tip)?;
+        let solver = Solver::new((*known.load::<IkSolver>(&OfArm(0))?).clone(), &chain)?;
+        let (weights, q) = (vec![1.0; chain.variables.len()], Configuration::neutral(&robot.model));
+        let at_root =
+            ArmModel::new(robot, &kinematics, 0, Arc::new(solver), &weights, &Pose::identity(), &q)?;
+        let world_from_robot = mobile_from_base * at_root.base_from_world();
+        let model = at_root.standing_at(&Pose::identity(), &world_from_robot);
+
+        let dofs: Vec<DofIdx> = arm.chain().variables.iter().map(|v| v.dof).collect();
+        let neutral = Configuration::neutral(arm.kinematics().model());
+        let cover = |parts: &Arc<ConvexParts>| Arc::new(SphereCover::of(parts, &CoverOptions::default()));
+        let covers = arm.shapes().iter().map(cover).collect();
+        let pairs = known.load::<ArmPairs>(&OfArm(0))?;
+        let fixed = LaneRobot::new(arm.kinematics(), &dofs, &neutral, arm.shapes(), &covers, &pairs.0)
+            .with_tables(arm.kinematics(), &dofs, arm.shapes());
+        let mut axes = vec![Axis::bounded(-FLOOR, FLOOR), Axis::bounded(-FLOOR, FLOOR), Axis::wrapping()];
+        axes.extend_from_slice(model.space().axes());
+
+        let rng = &mut Seed::new(1).split("samples").rng();
+        let samples = InverseSamples::of_arms(&[&model], &InverseSamplesOptions::default(), rng);
+        let nothing = PlannedScene::new(
+            &World::new(arm.kinematics().clone(), Pose::identity(), neutral),
+            arm.shapes(),
+            &Default::default(),
+            pairs.0.clone(),
+        );
+        let mut memory = LaneMemory::default();
+        let mut alone = LaneChecker::new(&fixed, &nothing, model.space(), 0.0, Width::widest(), &mut memory);
+        let samples = samples.retain(|_, postures| alone.apart(postures.iter().copied()));
+        Ok(Self {
+            driving: fixed.on_wheels(([-FLOOR; 2], [FLOOR; 2])),
+            mobile_from_root: mobile_from_base * arm.root_from_base().inverse(),
+            space: Space::new(axes),
+            model,
+            samples,
+        })
+    }
+
+    /// The boxes of a scene around it.
+    fn among(&self, arm: &ArmAlone, boxes: &[([f64; 3], [f64; 3])]) -> PlannedScene {
+        let above = Pose::translation(0.0, 0.0, self.mobile_from_root.translation.z);
+        let neutral = Configuration::neutral(arm.kinematics().model());
+        let mut world = World::new(arm.kinematics().clone(), above, neutral);
+        let mut bodies = TypedVec::new();
+        for (number, &(size, at)) in boxes.iter().enumerate() {
+            let geometry = Geometry { origin: Origin::default(), shape: Shape::Box { size }, colour: None };
+            let pose = Pose::translation(at[0], at[1], at[2]);
+            world.add(&number.to_string(), Arc::new(vec![geometry]), pose);
+            bodies.push(Arc::new(ConvexParts::new(vec![box_part(Vector3::from(size))])));
+        }
+        PlannedScene::new(&world, arm.shapes(), &bodies, vec![])
+    }
+
+    /// The state of base and arm, as the lanes see it.
+    fn state(&self, base: &[f64; 3], joints: &[f64]) -> Vec<f64> {
+        let world_from_root = placement(base).world_from_mobile() * self.mobile_from_root;
+        let (at, ahead) = (world_from_root.translation, world_from_root.rotation * Vector3::x());
+        [&[at.x, at.y, libm::atan2(ahead.y, ahead.x)], joints].concat()
+    }
+}
+
 /// A robot among the boxes of a scene.
 struct Problem<'a> {
     arm: &'a ArmAlone,
+    wheels: &'a OnWheels,
+    lanes: LaneChecker<'a>,
     obstacles: &'a ConvexParts,
     floor: &'a Floor,
     base: &'a Prism,
     mobile_from_base: Pose,
-    base_from_root: Pose,
     free: FreeValues,
     scratch: Scratch,
+    solutions: IkSolutions,
+    /// Of the arm's tip, and of its tool.
     grasps: &'a [Pose],
-    /// Links that the arm moves, but for the hand, which was looked at with the grasp.
-    order: Vec<LinkIdx>,
+    tool_grasps: &'a [Pose],
 }
 
 impl PlacementProblem for Problem<'_> {
@@ -110,40 +204,50 @@ impl PlacementProblem for Problem<'_> {
         if clear { Ok(()) } else { Err(Obstruction::Contact(1)) }
     }
 
-    fn solutions(&mut self, _: usize, stand: &Stand, world_from_tip: &Pose) -> Vec<Vec<f64>> {
-        let world_from_base = placement(&stand.base).world_from_mobile() * self.mobile_from_base;
-        let base_from_tip = world_from_base.inv_mul(world_from_tip);
-        let world_from_root = world_from_base * self.base_from_root;
-        let (arm, obstacles, order) = (self.arm, self.obstacles, &mut self.order);
-        let (mut tried, mut free) = (0, false);
-        let free_of_obstacles = |_: &[f64], links: &robotc_core::LinkPoses| {
-            let touches = |&link: &LinkIdx| {
-                let world_from_link = world_from_root * links.root_from(link);
-                any_within(&arm.shapes()[link], &world_from_link, obstacles, &Pose::identity(), 0.0)
-            };
-            // What touched last will mostly touch again.
-            let touching = order.iter().position(touches);
-            touching.into_iter().for_each(|at| order[..=at].rotate_right(1));
-            (tried, free) = (tried + 1, touching.is_none());
-            free || tried == TRIED
+    fn sift(&mut self, stands: &[Stand]) -> Vec<Option<Obstruction>> {
+        let clear = |stand: &Stand| self.floor.is_clear(self.base, &placement(&stand.base));
+        let mut touched: Vec<Option<Obstruction>> =
+            stands.iter().map(|stand| (!clear(stand)).then_some(Obstruction::Contact(1))).collect();
+        let left: Vec<usize> = (0..stands.len()).filter(|&i| touched[i].is_none()).collect();
+        let state = |&i: &usize| {
+            let Stand { base, posture } = &stands[i];
+            self.wheels.state(base, posture.as_deref().unwrap_or_default())
         };
-        let found = arm.reach_where(&base_from_tip, &self.free, &mut self.scratch, free_of_obstacles);
-        found.filter(|_| free).into_iter().collect()
+        let states: Vec<Vec<f64>> = left.iter().map(state).collect();
+        for (i, sight) in left.into_iter().zip(self.lanes.glances(states.iter().map(Vec::as_slice))) {
+            touched[i] = if let Sight::Blocked(by) = sight { Some(by) } else { None };
+        }
+        touched
+    }
+
+    /// The first solution that touches nothing, if any.
+    fn solutions(&mut self, _: usize, stand: &Stand, pose: &Pose) -> Vec<Vec<f64>> {
+        let world_from_mobile = placement(&stand.base).world_from_mobile();
+        let (wheels, lanes) = (self.wheels, &mut self.lanes);
+        let mut free_one = |all: &[Vec<f64>]| {
+            let states: Vec<Vec<f64>> = all.iter().map(|q| wheels.state(&stand.base, q)).collect();
+            lanes.first_free(states.iter().map(Vec::as_slice)).0.map(|first| all[first].clone())
+        };
+        if let Some(near) = &stand.posture {
+            let free: Vec<f64> = wheels.model.free_variables().iter().map(|&v| near[v]).collect();
+            let (found, _) =
+                wheels.model.inverse(&world_from_mobile.inv_mul(pose), &free, near, &mut self.solutions);
+            return free_one(&found).into_iter().collect();
+        }
+        let base_from_tip = (world_from_mobile * self.mobile_from_base).inv_mul(pose);
+        let (mut found, mut tried) = (None, 0);
+        self.arm.reach_in_groups(&base_from_tip, &self.free, &mut self.scratch, |group| {
+            let group = &group[..group.len().min(TRIED - tried)];
+            found = free_one(group);
+            tried += group.len();
+            found.is_some() || tried == TRIED
+        });
+        found.into_iter().collect()
     }
 
     fn is_free(&mut self, _: &[f64]) -> Result<(), Obstruction> {
         Ok(())
     }
-}
-
-/// The links between the base of the arm and its hand, from the hand on.
-fn moved_links(arm: &ArmAlone) -> Vec<LinkIdx> {
-    let model = arm.kinematics().model();
-    let first = arm.chain().variables[0].dof;
-    let moved = model.subtree(model.joints()[model.dofs()[first].joint].child);
-    let mut links: Vec<LinkIdx> = moved.into_iter().filter(|link| *link != arm.tip()).collect();
-    links.reverse();
-    links
 }
 
 fn placement(base: &[f64; 3]) -> Placement {
@@ -179,16 +283,17 @@ struct Outcome {
     places: u32,
 }
 
-/// Draws goals in every trial of a block, and adds what that took.
+/// Draws goals in every trial of a block, and adds what that took. Distributions are asked about tips, or about `tools`.
 fn block<D: BaseDistribution>(
     problem: &mut Problem<'_>,
     make: impl Fn() -> D,
+    tools: bool,
     (number, goals): (u64, usize),
     outcome: &mut Outcome,
 ) {
     let start = super::processor_seconds();
     for seed in number * TRIALS..(number + 1) * TRIALS {
-        trial(problem, &make, Seed::new(seed), goals, outcome);
+        trial(problem, &make, tools, Seed::new(seed), goals, outcome);
     }
     outcome.seconds += super::processor_seconds() - start;
 }
@@ -197,11 +302,13 @@ fn block<D: BaseDistribution>(
 fn trial<D: BaseDistribution>(
     problem: &mut Problem<'_>,
     make: impl Fn() -> D,
+    tools: bool,
     seed: Seed,
     wanted: usize,
     outcome: &mut Outcome,
 ) {
-    let arms = [PlacementArm { cost: 1.0, grasps: problem.grasps.to_vec() }];
+    let grasps = if tools { problem.tool_grasps } else { problem.grasps };
+    let arms = [PlacementArm { cost: 1.0, grasps: grasps.to_vec() }];
     let start = Instant::now();
     let mut distribution = make();
     let mut sampler =
@@ -223,9 +330,16 @@ fn trial<D: BaseDistribution>(
     outcome.places += sampler.rejections.places;
 }
 
-/// Rows of a Markdown table: for each scene and number of goals the median time to the first goal by the clock, goals for each second
-/// of processor time, and the share of places that are one, uniform and from the map, with the ratios.
-pub(crate) fn rows(name: &str, arm: &ArmAlone, map: &ReachabilityMap, reach: f64) -> Vec<String> {
+/// Rows of a Markdown table: for each scene and number of goals, uniform, from the map, and from samples, the median time to the first
+/// goal by the clock, goals for each second of processor time, and the share of places that are one; then how many times as fast the
+/// map and the samples are.
+pub(crate) fn rows(
+    name: &str,
+    arm: &ArmAlone,
+    wheels: &OnWheels,
+    map: &ReachabilityMap,
+    reach: f64,
+) -> Vec<String> {
     let (base, mobile_from_base) = base();
     let mut rows = Vec::new();
     for scene in SCENES {
@@ -235,46 +349,48 @@ pub(crate) fn rows(name: &str, arm: &ArmAlone, map: &ReachabilityMap, reach: f64
         let obstacles = ConvexParts::new(boxes.collect());
         let floor = Floor::new([(&obstacles, Pose::identity())], &base);
         let grasps = grasps(scene.object);
-        let (free, scratch) = (arm.free_values(EXACT), Scratch::default());
+        let tip_from_tool = wheels.model.tool_from_tip().inverse();
+        let tool_grasps: Vec<Pose> = grasps.iter().map(|tip| tip * tip_from_tool).collect();
+        let planned = wheels.among(arm, scene.boxes);
+        let mut memory = LaneMemory::default();
+        let (robot, space, width) = (&wheels.driving, &wheels.space, Width::widest());
         let mut problem = Problem {
             arm,
+            wheels,
+            lanes: LaneChecker::new(robot, &planned, space, 0.0, width, &mut memory),
             obstacles: &obstacles,
             floor: &floor,
             base: &base,
             mobile_from_base,
-            base_from_root: arm.root_from_base().inverse(),
-            free,
-            scratch,
+            free: arm.free_values(EXACT),
+            scratch: Scratch::default(),
+            solutions: IkSolutions::new(),
             grasps: &grasps,
-            order: moved_links(arm),
+            tool_grasps: &tool_grasps,
         };
         let radius = reach + mobile_from_base.translation.vector.xy().norm();
         for wanted in GOALS {
-            let mut outcomes = [Outcome::default(), Outcome::default()];
+            let mut outcomes = [Outcome::default(), Outcome::default(), Outcome::default()];
             for number in 0..BLOCKS {
-                let [uniform, mapped] = &mut outcomes;
-                block(&mut problem, || UniformBases { radius }, (number, wanted), uniform);
+                let [uniform, mapped, sampled] = &mut outcomes;
+                block(&mut problem, || UniformBases { radius }, false, (number, wanted), uniform);
                 let mounted = || {
                     let (mounts, tool_from_tip) = (vec![mobile_from_base], Pose::identity());
                     MapBases::new(vec![MountedArm { map, mounts, tool_from_tip }], Some((&floor, &base)))
                 };
-                block(&mut problem, mounted, (number, wanted), mapped);
+                block(&mut problem, mounted, false, (number, wanted), mapped);
+                block(&mut problem, || wheels.samples.clone(), true, (number, wanted), sampled);
             }
-            let first = |o: &Outcome| 1e3 * median(&o.first);
+            let each = |of: &dyn Fn(&Outcome) -> String| outcomes.each_ref().map(of).join(" / ");
             let rate = |o: &Outcome| o.goals as f64 / o.seconds;
-            let share = |o: &Outcome| 100.0 * o.goals as f64 / f64::from(o.places.max(1));
-            let [uniform, mapped] = &outcomes;
             rows.push(format!(
-                "| {name} | {} | {wanted} | {:.2} ms | {:.2} ms | {:.1} | {:.0} | {:.0} | {:.1} | {:.1} % | {:.1} % |",
+                "| {name} | {} | {wanted} | {} ms | {} | {} % | {:.1} | {:.1} |",
                 scene.name,
-                first(uniform),
-                first(mapped),
-                first(uniform) / first(mapped),
-                rate(uniform),
-                rate(mapped),
-                rate(mapped) / rate(uniform),
-                share(uniform),
-                share(mapped),
+                each(&|o| format!("{:.2}", 1e3 * median(&o.first))),
+                each(&|o| format!("{:.0}", rate(o))),
+                each(&|o| format!("{:.1}", 100.0 * o.goals as f64 / f64::from(o.places.max(1)))),
+                rate(&outcomes[1]) / rate(&outcomes[0]),
+                rate(&outcomes[2]) / rate(&outcomes[0]),
             ));
         }
     }

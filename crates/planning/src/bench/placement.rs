@@ -15,7 +15,7 @@ use crate::lanes::{LaneChecker, LaneMemory, LaneRobot, Sight, Width};
 use crate::manipulation::{Manipulation, ManipulationOptions};
 use crate::placement::{
     BaseDistribution, BasePlacement, InverseSamples, InverseSamplesOptions, PlacementArm, PlacementOptions,
-    PlacementProblem, Stand, UniformBases,
+    PlacementProblem, PlacementRejections, Stand, UniformBases,
 };
 use crate::scene::{Carriage, MobileChecker, Rules, Scene};
 
@@ -32,7 +32,18 @@ pub struct PlacementFigures {
     pub mean_ms: f64,
     /// Places tried, mean.
     pub places: f64,
+    /// Of these, those given up for the posture that they came with.
+    pub sifted: f64,
+    /// ... those where the base is not free.
+    pub bases_not_free: f64,
+    /// ... those from which no solution is within limits.
+    pub out_of_reach: f64,
+    /// Configurations that are not free, mean.
+    pub touching: f64,
 }
+
+/// A run: whether it found a place, milliseconds, and what was rejected.
+type Run = (bool, f64, PlacementRejections);
 
 /// The figures of a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -49,9 +60,10 @@ pub struct PlacementReport {
     pub times_faster: f64,
 }
 
-/// Looks for the first place with both distributions in turn.
+/// Looks for the first place with both distributions in turn. `robot` is that of the problem, for checks in lanes.
 pub fn measure_placement(
     problem: &Manipulation<'_>,
+    robot: &LaneRobot,
     planner: &ManipulationOptions,
     options: &MobileBenchOptions,
     now: &dyn Fn() -> f64,
@@ -65,13 +77,16 @@ pub fn measure_placement(
     }
     let arm = at_origin(problem);
     let began = now();
-    let samples =
-        InverseSamples::of_arms(&[&arm], &InverseSamplesOptions::default(), &mut Seed::new(1).rng());
     let [_, floor] = start_and_floor(problem, options);
     let floor = ([floor[0], floor[1]], [floor[2], floor[3]]);
     let height = problem.scene.world_from_robot().translation.z;
     let scene = problem.scene.standing_at(Pose::translation(0.0, 0.0, height));
-    let robot = LaneRobot::of_scene(&scene, arm.dofs(), &task.start).with_hand(&hand.links).on_wheels(floor);
+    let (mut memory, rest) = (LaneMemory::default(), task.start.select(arm.dofs()));
+    let samples =
+        InverseSamples::of_arms(&[&arm], &InverseSamplesOptions::default(), &mut Seed::new(1).rng());
+    let mut alone = LaneChecker::new(robot, problem.scene, arm.space(), 0.0, Width::widest(), &mut memory);
+    let samples = samples.retain(|_, postures| alone.apart(postures.iter().copied()));
+    let robot = robot.on_wheels(floor);
     let prepare_ms = 1e3 * (now() - began);
     let rules = Rules { margin: planner.margin, gripper: hand.links.clone(), ..Rules::default() };
     let moved: Vec<LinkIdx> = {
@@ -90,8 +105,7 @@ pub fn measure_placement(
         planner.resolution,
     );
     let carriage = whole.carriage(&|link| !moved.contains(&link));
-    let (mut memory, rest) = (LaneMemory::default(), task.start.select(arm.dofs()));
-    let mut runs: [Vec<(bool, f64, u32)>; 2] = Default::default();
+    let mut runs: [Vec<Run>; 2] = Default::default();
     for seed in 0..options.seeds {
         for (number, runs) in runs.iter_mut().enumerate() {
             let mut inverse = samples.clone();
@@ -111,8 +125,8 @@ pub fn measure_placement(
                     Ok(GoalDraw::Exhausted) | Err(_) => break false,
                 }
             };
-            let places = sampler.rejections.places;
-            runs.push((found, 1e3 * (now() - start), places));
+            let rejections = std::mem::take(&mut sampler.rejections);
+            runs.push((found, 1e3 * (now() - start), rejections));
         }
     }
     let [inverse, uniform] = runs.map(|runs| figures(&runs));
@@ -124,8 +138,11 @@ pub fn measure_placement(
     Some(PlacementReport { scene: task.name.clone(), grasps: grasps.len(), prepare_ms, bases, times_faster })
 }
 
-fn figures(runs: &[(bool, f64, u32)]) -> PlacementFigures {
+fn figures(runs: &[Run]) -> PlacementFigures {
     let count = runs.len().max(1) as f64;
+    let mean = |of: &dyn Fn(&PlacementRejections) -> u32| {
+        runs.iter().map(|run| f64::from(of(&run.2))).sum::<f64>() / count
+    };
     let mut times: Vec<f64> = runs.iter().map(|run| run.1).collect();
     times.sort_by(f64::total_cmp);
     PlacementFigures {
@@ -133,7 +150,11 @@ fn figures(runs: &[(bool, f64, u32)]) -> PlacementFigures {
         solved: runs.iter().filter(|run| run.0).count() as u64,
         median_ms: times.get(times.len() / 2).copied().unwrap_or(0.0),
         mean_ms: times.iter().sum::<f64>() / count,
-        places: runs.iter().map(|run| f64::from(run.2)).sum::<f64>() / count,
+        places: mean(&|r| r.places),
+        sifted: mean(&|r| r.sifted),
+        bases_not_free: mean(&|r| r.bases),
+        out_of_reach: mean(&|r| r.out_of_reach),
+        touching: mean(&|r| r.configurations),
     }
 }
 

@@ -7,7 +7,7 @@ use pulp::{Simd, WithSimd};
 
 use super::checker::{LaneChecker, LaneMemory};
 use super::frames::Frames;
-use super::kernel::{Close, MOST_LANES, Scratch, children};
+use super::kernel::{COARSE, Close, MOST_LANES, Scratch, children};
 use super::lane::{Lanes, Mask, dot, minus};
 use super::mechanism::LaneRobot;
 use super::obstacle::Obstacle;
@@ -25,20 +25,33 @@ pub enum Sight {
     Open,
 }
 
-/// How closely spheres look.
+/// What spheres look for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Care {
-    /// Only for what is certainly blocked: what is not may be anything.
+    /// Obstacles that are certainly touched, and not only with something small: what is not blocked may be anything.
     Glance,
-    /// For all that there is to know.
+    /// All that there is to know of links that touch each other.
+    Itself,
+    /// All that there is to know.
     Full,
 }
 
+/// Obstacles smaller than this, and spheres below those of this radius, are not glanced at, metres.
+const SMALL: f32 = 0.07;
+
 impl LaneChecker<'_> {
-    /// Which of these states are certainly blocked, as far as spheres inside of the robot tell. The others are
-    /// [open](Sight::Open); most of those are free.
+    /// In which of these states the robot is certainly in an obstacle, as far as a few spheres inside of it tell. The others are
+    /// [open](Sight::Open): nothing is said of links that touch each other, nor of what is touched slightly. Meant for states that are
+    /// only near those that matter.
     pub fn glances<'q>(&mut self, states: impl IntoIterator<Item = &'q [f64]>) -> Vec<Sight> {
         self.look_at_each(states, Care::Glance, |_, _, _| None)
+    }
+
+    /// Whether links stay apart from each other in each of these states; obstacles are not looked at.
+    pub fn apart<'q>(&mut self, states: impl IntoIterator<Item = &'q [f64]>) -> Vec<bool> {
+        let settled = |checker: &mut Self, q: &[f64], lane: usize| Some(checker.settle_state(q, lane));
+        let sights = self.look_at_each(states, Care::Itself, settled);
+        sights.into_iter().map(|sight| sight == Sight::Free).collect()
     }
 
     /// Whether each of these states is free; if not, why. The same as asking one after another.
@@ -105,6 +118,7 @@ impl LaneChecker<'_> {
                 let sight = match blocked[lane] {
                     _ if !self.space.contains(q) => Sight::Blocked(Obstruction::Bounds),
                     Some(close) => Sight::Blocked(self.obstruction(close)),
+                    None if care == Care::Glance => Sight::Open,
                     None if open >> lane & 1 == 0 => Sight::Free,
                     None => settle(self, q, lane).unwrap_or(Sight::Open),
                 };
@@ -194,8 +208,12 @@ impl WithSimd for Crowd<'_> {
             blocked: [None; MOST_LANES],
             rounding: robot.rounding as f32,
         };
-        eye.against_obstacles(obstacles, near);
-        eye.against_itself();
+        if care != Care::Itself {
+            eye.against_obstacles(obstacles, near);
+        }
+        if care != Care::Glance {
+            eye.against_itself();
+        }
         Seen { open: bits(simd, eye.open.and(eye.live)), blocked: eye.blocked }
     }
 }
@@ -260,16 +278,23 @@ impl<S: Simd> Eye<'_, S> {
         for (group, near) in robot.groups.iter().zip(near).rev() {
             for &(number, room) in near {
                 let solid = &obstacles[number as usize];
+                let (middle, radius) = (solid.ball.0.map(|x| x as f32), solid.ball.1 as f32);
                 // How deep two things are in each other, spheres do not tell.
-                if self.care == Care::Glance && room < 0.0 {
+                if self.care == Care::Glance && (room < 0.0 || radius < SMALL) {
                     continue;
                 }
                 let slack = self.rounding + solid.pad + room.max(0.0);
                 let ball = &robot.spheres[group.ball];
+                // Most are far from each other, which balls tell sooner than faces.
+                let centre = self.frames.centre(group.ball, group.frame);
+                let between = minus(&centre, &middle.map(|x| self.splat(x)));
+                let reach = self.splat((ball.outer + slack + radius) * (1.0 + 1e-5));
+                if !dot(&between, &between).less_equal(reach * reach).and(self.live).any() {
+                    continue;
+                }
                 if group.bodies.len() > 1 {
                     let limit = self.splat(ball.outer + slack);
-                    let centre = self.frames.centre(group.ball, group.frame);
-                    let question = Question { limit, coarse: 0.25 * ball.outer };
+                    let question = Question { limit, coarse: COARSE * ball.outer };
                     let least = solid.squared_distance(self.simd, &centre, question).0;
                     if !least.less_equal(limit * limit).and(self.live).any() {
                         continue;
@@ -300,9 +325,9 @@ impl<S: Simd> Eye<'_, S> {
             }
             let question = match self.care {
                 Care::Glance => robot.question(self.simd, at, room),
-                Care::Full => {
+                Care::Full | Care::Itself => {
                     let leaf = sphere.next as usize == at + 1;
-                    let coarse = if leaf { 0.0 } else { 0.25 * sphere.outer };
+                    let coarse = if leaf { 0.0 } else { COARSE * sphere.outer };
                     Question { limit: self.splat(sphere.outer + slack), coarse }
                 }
             };
@@ -321,14 +346,16 @@ impl<S: Simd> Eye<'_, S> {
                     return false;
                 }
             }
+            if self.care == Care::Glance {
+                at = if sphere.outer > SMALL { at + 1 } else { sphere.next as usize };
+                continue;
+            }
             if sphere.next as usize == at + 1 {
                 open = open.or(maybe);
             }
             at += 1;
         }
-        if self.care == Care::Full {
-            self.leave_open(open.and(self.live), close);
-        }
+        self.leave_open(open.and(self.live), close);
         true
     }
 
@@ -346,11 +373,7 @@ impl<S: Simd> Eye<'_, S> {
             self.stack.push((a.spheres.start as u32, b.spheres.start as u32));
             while let Some((at_a, at_b)) = self.stack.pop() {
                 let (of_a, of_b) = (&robot.spheres[at_a as usize], &robot.spheres[at_b as usize]);
-                let reach = match self.care {
-                    Care::Glance if of_a.core.min(of_b.core) <= self.rounding => continue,
-                    Care::Glance => of_a.core + of_b.core,
-                    Care::Full => of_a.outer + of_b.outer + 2.0 * self.rounding,
-                };
+                let reach = of_a.outer + of_b.outer + 2.0 * self.rounding;
                 let between = minus(
                     &self.frames.centre(at_a as usize, a.frame),
                     &self.frames.centre(at_b as usize, b.frame),
@@ -391,9 +414,7 @@ impl<S: Simd> Eye<'_, S> {
                     children(&robot.spheres, at_b, |child| self.stack.push((at_a, child)));
                 }
             }
-            if self.care == Care::Full {
-                self.leave_open(open.and(self.live), close);
-            }
+            self.leave_open(open.and(self.live), close);
         }
     }
 }

@@ -1,35 +1,18 @@
 //! A robot on wheels: the same bodies, with three more coordinates that move all of them.
 
-use nalgebra::Vector3;
-use robotc_core::Pose;
-use robotc_core::geom::{ConvexParts, CoverOptions, SphereCover};
-use robotc_core::{Configuration, DofIdx, LinkIdx, TypedVec};
 use std::sync::Arc;
 
+use nalgebra::Vector3;
+use robotc_core::Pose;
+
 use super::mechanism::{LaneRobot, Step, z_onto};
-use crate::scene::Scene;
 
 /// Coordinates of a base that drives: x, y and heading.
 const DRIVING: usize = 3;
 
 impl LaneRobot {
-    /// The robot of a scene, moved by `dofs` from configuration `q` on. Spheres around its links are found anew, which takes some tens
-    /// of milliseconds.
-    pub fn of_scene(scene: &Scene, dofs: &[DofIdx], q: &Configuration) -> Self {
-        let links = || scene.kinematics().model().links().indices();
-        let of_link = |link: LinkIdx| Arc::new(ConvexParts::new(scene.link_parts(link).cloned().collect()));
-        let parts: TypedVec<LinkIdx, Arc<ConvexParts>> = links().map(of_link).collect();
-        let cover = |parts: &Arc<ConvexParts>| Arc::new(SphereCover::of(parts, &CoverOptions::default()));
-        let covers = parts.iter().map(cover).collect();
-        Self::new(scene.kinematics(), dofs, q, &parts, &covers, scene.self_pairs()).with_tables(
-            scene.kinematics(),
-            dofs,
-            &parts,
-        )
-    }
-
     /// The same robot on a base that drives. Its first three coordinates are x and y, metres, from `low` to `high`, and the heading,
-    /// radians; the other ones follow. The scene to check it in is one in which it [stands](Scene::standing_at) above the origin of the
+    /// radians; the other ones follow. The scene to check it in is one in which it [stands](crate::scene::Scene::standing_at) above the origin of the
     /// world, not turned.
     pub fn on_wheels(&self, (low, high): ([f64; 2], [f64; 2])) -> Self {
         let [along_x, along_y] = [Vector3::x_axis(), Vector3::y_axis()]

@@ -93,20 +93,72 @@ pub struct InverseSamples {
     asked: Vec<Asked>,
 }
 
-/// Samples of an arm by their height. What decides whether they serve a pose is stored by itself.
-#[derive(Debug)]
+/// Samples of an arm in slabs of height, in each by their tilt.
+#[derive(Debug, Clone)]
 struct Samples {
-    heights: Vec<f64>,
-    /// The vertical in the tool frame.
+    /// Height of a slab, metres, and the number of the lowest one.
+    slab: f64,
+    lowest: i64,
+    /// For each slab, the position of its first sample; then the number of all.
+    starts: Vec<usize>,
+    /// The vertical in the tool frame. What decides whether a sample serves a pose is stored by itself.
     ups: Vec<UnitVector3<f64>>,
+    heights: Vec<f64>,
     samples: Vec<Sample>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Sample {
     base_from_tool: Pose,
     weight: f64,
     posture: Vec<f64>,
+}
+
+impl Sample {
+    fn height(&self) -> f64 {
+        self.base_from_tool.translation.z
+    }
+
+    fn up_in_tool(&self) -> UnitVector3<f64> {
+        self.base_from_tool.rotation.inverse() * Vector3::z_axis()
+    }
+}
+
+impl Samples {
+    fn new(mut samples: Vec<Sample>, slab: f64) -> Self {
+        let number = |sample: &Sample| (sample.height() / slab).floor() as i64;
+        let key = |sample: &Sample| (number(sample), sample.up_in_tool().z);
+        samples.sort_by(|a, b| {
+            let (a, b) = (key(a), key(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
+        let lowest = samples.first().map_or(0, number);
+        let highest = samples.last().map_or(-1, number);
+        let starts = (lowest..=highest + 1).map(|at| samples.partition_point(|s| number(s) < at)).collect();
+        let ups = samples.iter().map(Sample::up_in_tool).collect();
+        let heights = samples.iter().map(Sample::height).collect();
+        Self { slab, lowest, starts, ups, heights, samples }
+    }
+
+    /// Positions of the samples that are no farther from a height, and from a tilt, than `options` say.
+    fn serving(&self, height: f64, up: &UnitVector3<f64>, options: &InverseSamplesOptions) -> Vec<usize> {
+        let slab = |height: f64| ((height / self.slab).floor() as i64 - self.lowest).max(0) as usize;
+        let (low, high) = (height - options.height, height + options.height);
+        let least = libm::cos(options.tilt);
+        // Heights of the vertical at this tilt.
+        let tilt = libm::acos(up.z.clamp(-1.0, 1.0));
+        let from = libm::cos((tilt + options.tilt).min(PI)) - 1e-9;
+        let to = libm::cos((tilt - options.tilt).max(0.0)) + 1e-9;
+        let mut serving = Vec::new();
+        for two in self.starts.windows(2).take(slab(high) + 1).skip(slab(low)) {
+            let ups = &self.ups[two[0]..two[1]];
+            let first = two[0] + ups.partition_point(|up| up.z < from);
+            let end = two[0] + ups.partition_point(|up| up.z <= to);
+            let serves = |&i: &usize| self.ups[i].dot(up) >= least && (low..=high).contains(&self.heights[i]);
+            serving.extend((first..end).filter(serves));
+        }
+        serving
+    }
 }
 
 /// Samples that serve a pose.
@@ -133,15 +185,22 @@ impl InverseSamples {
         let of_arm = |arm: &&ArmModel| {
             let mut samples: Vec<Sample> = (0..options.count).map(|_| sample(arm, rng)).collect();
             samples.retain(|sample| sample.weight > 0.0);
-            let height = |sample: &Sample| sample.base_from_tool.translation.z;
-            let up = |sample: &Sample| sample.base_from_tool.rotation.inverse() * Vector3::z_axis();
-            // Those that serve a pose are a range of heights.
-            samples.sort_by(|a, b| height(a).total_cmp(&height(b)));
-            let (heights, ups) = (samples.iter().map(height).collect(), samples.iter().map(up).collect());
-            Samples { heights, ups, samples }
+            Samples::new(samples, options.height.max(1e-3))
         };
         let arms = Arc::new(arms.iter().map(of_arm).collect());
         Self { options: *options, arms, asked: Vec::new() }
+    }
+
+    /// The same without postures that are no good wherever the base is, say for a self-collision. `keep` tells for each posture of
+    /// an arm whether it is good.
+    pub fn retain(&self, mut keep: impl FnMut(usize, &[&[f64]]) -> Vec<bool>) -> Self {
+        let kept = |(number, all): (usize, &Samples)| {
+            let postures: Vec<&[f64]> = all.samples.iter().map(|s| s.posture.as_slice()).collect();
+            let kept = all.samples.iter().zip(keep(number, &postures)).filter(|(_, keep)| *keep);
+            Samples::new(kept.map(|(sample, _)| sample.clone()).collect(), all.slab)
+        };
+        let arms = Arc::new(self.arms.iter().enumerate().map(kept).collect());
+        Self { options: self.options, arms, asked: Vec::new() }
     }
 
     /// Samples that serve a pose, each with the sum of weights up to it.
@@ -149,12 +208,9 @@ impl InverseSamples {
         let known = |asked: &Asked| asked.arm == arm && asked.world_from_tool == *world_from_tool;
         let at = self.asked.iter().position(known).unwrap_or_else(|| {
             let up = world_from_tool.rotation.inverse() * Vector3::z_axis();
-            let least = libm::cos(self.options.tilt);
-            let (all, height) = (&self.arms[arm], world_from_tool.translation.z);
-            let first = all.heights.partition_point(|h| *h < height - self.options.height);
-            let end = all.heights.partition_point(|h| *h <= height + self.options.height);
-            let serving = (first..end).filter(|&i| all.ups[i].dot(&up) >= least);
-            let summed = serving.scan(0.0, |sum, i| {
+            let all = &self.arms[arm];
+            let serving = all.serving(world_from_tool.translation.vector.z, &up, &self.options);
+            let summed = serving.into_iter().scan(0.0, |sum, i| {
                 *sum += all.samples[i].weight;
                 Some((i, *sum))
             });

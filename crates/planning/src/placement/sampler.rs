@@ -77,6 +77,9 @@ const UNDRAWN: u32 = 100;
 /// Places with a posture that are looked at together: as many as the widest lanes take.
 const TOGETHER: usize = 16;
 
+/// Of these, those for the same grasp: to find how well a grasp is reached takes as long as many draws.
+const EACH: usize = 4;
+
 /// A posture is only near one that reaches, and what is in the way of the one may not be in the way of the other. So of every so many
 /// places one is tried in any case.
 const UNSIFTED: u32 = 128;
@@ -262,20 +265,22 @@ impl<'a, P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> BasePlaceme
 
     /// Draws places that are worth trying, last one first.
     fn draw_stands(&mut self) {
-        let (mut stands, mut of) = (Vec::new(), Vec::new());
-        while stands.len() < TOGETHER {
+        let (mut stands, mut of) = (Vec::with_capacity(TOGETHER), Vec::with_capacity(TOGETHER));
+        'drawing: while stands.len() < TOGETHER {
             let Some((arm, grasp)) = self.choose() else { break };
             let world_from_tool = &self.arms[arm].grasps[grasp];
-            let Some(stand) = self.distribution.draw(arm, world_from_tool, &mut self.rng) else {
-                self.rejections.undrawn += 1;
-                break;
-            };
-            if stand.posture.is_none() && stands.is_empty() {
-                self.stands.push((arm, grasp, stand));
-                return;
+            for _ in 0..EACH {
+                let Some(stand) = self.distribution.draw(arm, world_from_tool, &mut self.rng) else {
+                    self.rejections.undrawn += 1;
+                    break 'drawing;
+                };
+                if stand.posture.is_none() && stands.is_empty() {
+                    self.stands.push((arm, grasp, stand));
+                    return;
+                }
+                stands.push(stand);
+                of.push((arm, grasp));
             }
-            stands.push(stand);
-            of.push((arm, grasp));
         }
         let touched = self.problem.sift(&stands);
         for (((arm, grasp), stand), touched) in of.into_iter().zip(stands).zip(touched).rev() {

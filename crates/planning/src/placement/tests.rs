@@ -115,8 +115,9 @@ fn inverse_samples(seed: u64) -> InverseSamples {
 #[test]
 fn placements_reach_their_grasps_and_are_free() {
     let arm = testbed::arm(false);
-    let (placements, rejections) = sample(&mut inverse_samples(1), &[0], 20, 1);
-    assert_eq!(placements.len(), 20);
+    // So many that every grasp is drawn.
+    let (placements, rejections) = sample(&mut inverse_samples(1), &[0], 80, 1);
+    assert_eq!(placements.len(), 80);
     assert_eq!((rejections.grasps, rejections.hopeless), (1, 1), "{rejections}");
     let scene = scene();
     with_cell(&scene, &arm, |cell| {

@@ -143,11 +143,6 @@ impl Scene {
         Self { world_from_robot, ..self.clone() }
     }
 
-    /// Pairs of links that are compared with each other.
-    pub(crate) fn self_pairs(&self) -> &[(LinkIdx, LinkIdx)] {
-        &self.self_pairs
-    }
-
     /// Where a body is.
     pub fn world_from_body(&self, body: BodyIdx) -> &Pose {
         &self.bodies[body].world_from_body

@@ -27,14 +27,25 @@ pub(in super::super) fn placement(args: &Placement) -> Outcome {
     let planner = session.options();
     let options = MobileBenchOptions { seeds: args.seeds, ..MobileBenchOptions::default() };
     let now = clock::processor();
-    let report = session.with_problem(|p| bench::measure_placement(p, &planner, &options, &now));
+    let robot = session.lane_robot();
+    let report = session.with_problem(|p| bench::measure_placement(p, &robot, &planner, &options, &now));
     let report = report.ok_or_else(|| Failure::Input("no grasp of the object is free".into()))?;
     let about = format!(
         "{}: {} grasps, {} runs, samples drawn in {:.0} ms",
         report.scene, report.grasps, args.seeds, report.prepare_ms
     );
     print(&about);
-    let mut table = Table::new(&["bases", "solved", "median ms", "mean ms", "places"]);
+    let mut table = Table::new(&[
+        "bases",
+        "solved",
+        "median ms",
+        "mean ms",
+        "places",
+        "sifted",
+        "base not free",
+        "out of reach",
+        "touching",
+    ]);
     for b in &report.bases {
         table.row([
             b.bases.into(),
@@ -42,6 +53,10 @@ pub(in super::super) fn placement(args: &Placement) -> Outcome {
             format!("{:.2}", b.median_ms),
             format!("{:.2}", b.mean_ms),
             format!("{:.1}", b.places),
+            format!("{:.1}", b.sifted),
+            format!("{:.1}", b.bases_not_free),
+            format!("{:.1}", b.out_of_reach),
+            format!("{:.1}", b.touching),
         ]);
     }
     publish(&args.task, &table, &report, || {

@@ -237,6 +237,34 @@ impl ArmAlone {
         found
     }
 
+    /// Joint vectors within limits that reach a tip pose, for these values of the free joints, a few of them at a time: each group is
+    /// given to `enough`, until that says so. Nothing is looked at for self-collisions.
+    pub fn reach_in_groups(
+        &self,
+        base_from_tip: &Pose,
+        free: &FreeValues,
+        scratch: &mut Scratch,
+        mut enough: impl FnMut(&[Vec<f64>]) -> bool,
+    ) {
+        let poses = [*base_from_tip; TOGETHER];
+        let mut at = 0;
+        while at < free.len() {
+            let count = TOGETHER.min(free.len() - at);
+            let rows: Vec<f64> = (at..at + count).flat_map(|i| free.row(i)).copied().collect();
+            self.solver.solve_batch_once(&poses[..count], &rows, &mut scratch.batch);
+            let mut group = Vec::new();
+            for solution in (0..count).flat_map(|i| scratch.batch.solutions(i)) {
+                if self.within_limits(solution, 0, &mut scratch.joints) {
+                    group.push(scratch.joints.clone());
+                }
+            }
+            at += count;
+            if enough(&group) {
+                return;
+            }
+        }
+    }
+
     /// Of the joint vectors that reach a tip pose within limits and without self-collision, for `samples` evenly spaced values
     /// of each free joint, the one with the largest manipulability, with that; `None` when there is none.
     pub fn most_manipulable(
