@@ -40,13 +40,13 @@ pub(in super::super) fn bispace(args: &BiSpace) -> Outcome {
     let report = report.ok_or_else(|| Failure::Input("no grasp of the object is free".into()))?;
     let about = about(&report);
     print(&about);
-    let mut table = Table::new(&["search", "solved", "mean s", "median s", "states"]);
+    let mut table = Table::new(&["search", "solved", "mean ms", "median ms", "states"]);
     for s in &report.searches {
         table.row([
             s.search.into(),
             s.solved.to_string(),
-            format!("{:.3}", s.mean_s),
-            format!("{:.3}", s.median_s),
+            format!("{:.2}", 1e3 * s.mean_s),
+            format!("{:.2}", 1e3 * s.median_s),
             format!("{:.0}", s.states),
         ]);
     }
