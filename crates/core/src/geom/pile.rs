@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 
 use super::{Aabb, ConvexPart, HeightField, Lump, Otherwise, PointCloud, RoomAsked};
 use crate::Pose;
@@ -123,10 +123,16 @@ impl Pile {
         let mut now = RoomAsked { enough: asked.enough.max(asked.least), along: None, ..*asked };
         let mut touches = false;
         self.walk(&query.centre, |lump, leaf| {
-            if touches || query.bound(lump) > now.enough || planes.clear(lump, now.enough) {
+            let bound = if touches { f64::INFINITY } else { query.bound(lump) };
+            if bound > now.enough || planes.clear(lump, now.enough) {
                 return false;
             }
-            if !leaf && lump.bounds().contains(&query.centre) {
+            // What is apart along no face is hardly ever apart.
+            let turned = query.bound_turned(&lump.bounds());
+            if turned > now.enough {
+                return false;
+            }
+            if !leaf && bound.max(turned) <= 0.0 {
                 return true;
             }
             // Of a node it matters only whether it can be left out.
@@ -188,18 +194,35 @@ struct Query {
     bounds: Aabb,
     centre: Point3<f64>,
     radius: f64,
+    /// The box around the part in its own frame, which fits more closely; and how the part sees the pile.
+    own: Aabb,
+    part_from_pile: Matrix3<f64>,
+    pile_in_part: Vector3<f64>,
 }
 
 impl Query {
     fn new(part: &ConvexPart, part_from_pile: &Pose) -> Self {
         let pile_from_part = part_from_pile.inverse();
         let (centre, radius) = part.bounding_sphere();
-        let bounds = part.bounds().transformed(&pile_from_part);
-        Self { bounds, centre: pile_from_part * centre, radius }
+        Self {
+            bounds: part.bounds().transformed(&pile_from_part),
+            centre: pile_from_part * centre,
+            radius,
+            own: *part.bounds(),
+            part_from_pile: *part_from_pile.rotation.to_rotation_matrix().matrix(),
+            pile_in_part: part_from_pile.translation.vector,
+        }
     }
 
     fn bound(&self, lump: &Lump) -> f64 {
         lump.bound(&self.bounds, &self.centre, self.radius)
+    }
+
+    /// No more than the distance of the part from a box, along the axes of the part.
+    fn bound_turned(&self, of_pile: &Aabb) -> f64 {
+        let centre = Point3::from(self.part_from_pile * of_pile.centre().coords + self.pile_in_part);
+        let half = self.part_from_pile.abs() * (of_pile.size() * 0.5);
+        self.own.distance_between(&Aabb { low: centre - half, high: centre + half }) - ROUNDING
     }
 }
 

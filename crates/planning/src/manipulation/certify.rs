@@ -256,6 +256,7 @@ fn replay_article(
     let opens = values.end()[0] > values.start()[0];
     let cages: Vec<&Cage> =
         problem.cages[motion.article].iter().filter(|cage| cage.hold.moves(opens)).collect();
+    let mut within: Option<&Cage> = None;
     let sample = |time: f64| [trajectory.sample(time).positions, values.sample(time).positions].concat();
     for (time, at) in dense_states(&checker, trajectory.times(), &sample, step) {
         let mut q = begins.q.clone();
@@ -263,12 +264,16 @@ fn replay_article(
         let part = mechanism.world_from_part(at[dofs.len()]);
         let tool = arm.world_from_tool(&q.select(arm.dofs()));
         let part_from_tool = part.inv_mul(&tool);
-        let near = |cage: &&&Cage| {
+        let near = |cage: &&Cage| {
             let grip = &cage.grasp.part_from_tool;
             (grip.translation.vector - part_from_tool.translation.vector).norm() <= options.caging.shift
                 && grip.rotation.angle_to(&part_from_tool.rotation) <= options.caging.turn
         };
-        if !cages.iter().any(|cage| near(&cage)) {
+        // Mostly it is still near to the same grip.
+        if !within.is_some_and(|cage| near(&cage)) {
+            within = cages.iter().copied().find(near);
+        }
+        if within.is_none() {
             return Err((time, "the gripper leaves the cage".into()));
         }
     }

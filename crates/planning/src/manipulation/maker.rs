@@ -58,8 +58,11 @@ impl<'c, 'a> Maker<'c, 'a> {
     ) {
         let cx = self.cx;
         let (dofs, resolution) = (drive.dofs.to_vec(), cx.options.resolution);
+        // The heading goes on from where it is as well.
+        let mut path = path.to_vec();
+        path[0] = self.q.select(&dofs);
         let mut checker = RobotChecker::new(scene, &drive.space, &dofs, &self.q, rules, resolution);
-        let timed = time_path(&mut checker, path, &drive.limits, &cx.options.timing);
+        let timed = time_path(&mut checker, &path, &drive.limits, &cx.options.timing);
         let model = &cx.robot().model;
         let names = dofs.iter().map(|&d| model.dofs()[d].name.clone()).collect();
         let trajectory = timed.into_trajectory(dofs, names).expect("times of a timed path grow");
