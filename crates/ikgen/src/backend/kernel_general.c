@@ -638,7 +638,7 @@ static void ik_rows_at(const ik_six_rows *six, ik_turn turn, double rows[54])
 
 /* Clears the first columns of six rows of this width below the diagonal, with row exchanges; returns the product of the pivots, and
    multiplies `sign` by that of the exchanges. */
-static double ik_clear(double *rows, int width, int columns, double *sign)
+static double ik_clear(double *rows, int width, int columns, double *sign, double *least)
 {
     double product = 1.0, swap, inverse, factor;
     int k, r, c, pivot;
@@ -656,6 +656,7 @@ static double ik_clear(double *rows, int width, int columns, double *sign)
             *sign = -*sign;
         }
         product *= top[k];
+        if (ik_abs(top[k]) < *least) *least = ik_abs(top[k]);
         if (!(top[k] < 0.0) && !(top[k] > 0.0)) continue;
         inverse = 1.0 / top[k];
         for (r = k + 1; r < 6; r++) {
@@ -676,18 +677,18 @@ static double ik_clear(double *rows, int width, int columns, double *sign)
        0 L L 0
        0 U T T      the three rows L L 0 and U T T clear the second block of columns,
        0 0 L L      and leave three that join the last */
-static double ik_reduced(const ik_six_rows *six, ik_turn turn, double left[36])
+static double ik_reduced(const ik_six_rows *six, ik_turn turn, double left[36], double *least)
 {
     double rows[54], next[54] = { 0.0 }, sign = 1.0, ignored = 1.0, first, second;
     int r, c;
     ik_rows_at(six, turn, rows);
     /* The same steps act on the equations and on their multiples, so that the sign of exchanges cancels. */
-    first = ik_clear(rows, 9, 3, &ignored);
+    first = ik_clear(rows, 9, 3, &ignored, least);
     for (r = 0; r < 3; r++) {
         for (c = 0; c < 6; c++) next[9 * r + c] = rows[9 * (3 + r) + 3 + c];
         for (c = 0; c < 9; c++) next[9 * (3 + r) + c] = rows[9 * r + c];
     }
-    second = ik_clear(next, 9, 3, &sign);
+    second = ik_clear(next, 9, 3, &sign, least);
     for (r = 0; r < 3; r++)
         for (c = 0; c < 6; c++) {
             left[6 * r + c] = next[9 * (3 + r) + 3 + c];
@@ -700,9 +701,9 @@ static double ik_reduced(const ik_six_rows *six, ik_turn turn, double left[36])
 /* The null space of the reduced system: vectors (t y, y); returns how many there are, three at most. */
 static int ik_null_space(const ik_six_rows *six, ik_turn turn, int most, double nothing, double vectors[3][6])
 {
-    double m[36], largest = 0.0, pivot, factor, x[6], sum, swap;
+    double m[36], largest = 0.0, pivot, factor, x[6], sum, swap, least = 1.0;
     int columns[6] = { 0, 1, 2, 3, 4, 5 }, rank = 0, row, column, count, r, c, i;
-    ik_reduced(six, turn, m);
+    ik_reduced(six, turn, m, &least);
     for (; rank < 6; rank++) {
         row = column = rank;
         for (r = rank; r < 6; r++)
@@ -795,6 +796,62 @@ static int ik_third(const ik_vector forms[6], ik_turn found[2])
     return i;
 }
 
+/* The third angle, as a multiple of 1, c, s, that two solutions share which differ in t: both (y, 0) and (0, y) are null vectors then,
+   and no map says what t is. Returns whether there is one, and how many of the vectors are of others; they come first, with nothing of y
+   left in them. */
+static int ik_shared(ik_vector highs[3], ik_vector lows[3], int n, ik_vector *y, int *rest)
+{
+    double square, part, most = 0.0, before;
+    int i, k, longest;
+    ik_vector swap;
+    for (k = 0; k < n - 1; k++) {
+        longest = k;
+        for (i = k + 1; i < n; i++)
+            if (ik_dot(lows[i], lows[i]) > ik_dot(lows[longest], lows[longest])) longest = i;
+        swap = lows[k];
+        lows[k] = lows[longest];
+        lows[longest] = swap;
+        swap = highs[k];
+        highs[k] = highs[longest];
+        highs[longest] = swap;
+        for (i = k + 1; i < n; i++) {
+            part = ik_dot(lows[i], lows[k]) / ik_dot(lows[k], lows[k]);
+            lows[i] = ik_minus(lows[i], ik_scaled(lows[k], part));
+            highs[i] = ik_minus(highs[i], ik_scaled(highs[k], part));
+        }
+    }
+    *y = highs[n - 1];
+    square = ik_dot(*y, *y);
+    /* Below the square of this angle, about, two third angles are one. */
+    if (!(ik_dot(lows[n - 1], lows[n - 1]) < 1e-8 * square)) return 0;
+    longest = 0;
+    for (i = 0; i < n - 1; i++) {
+        before = ik_dot(lows[i], lows[i]);
+        lows[i] = ik_minus(lows[i], ik_scaled(*y, ik_dot(lows[i], *y) / square));
+        highs[i] = ik_minus(highs[i], ik_scaled(*y, ik_dot(highs[i], *y) / square));
+        part = ik_dot(lows[i], lows[i]) / before;
+        if (part > most) {
+            longest = i;
+            most = part;
+        }
+    }
+    lows[0] = lows[longest];
+    highs[0] = highs[longest];
+    *rest = most > 1e-8;
+    return 1;
+}
+
+/* The halves of turns, as vectors along them, with a t^2 + b t + c = 0: returns how many there are. */
+static int ik_halves_of(ik_vector form, ik_turn halves[2])
+{
+    double a = form.x[0], b = form.x[1], c = form.x[2], square = b * b - 4.0 * a * c, far;
+    int count;
+    if (!(square > -1e-8 * (b * b + 4.0 * ik_abs(a * c)))) return 0;
+    far = b < 0.0 ? b - ik_sqrt(square) : b + ik_sqrt(square);
+    count = ik_unit(-2.0 * a, far, &halves[0]);
+    return count + ik_unit(far, -2.0 * c, &halves[count]);
+}
+
 /* The pairs at a root where several solutions share the angle: as many null vectors as there are solutions, mixed. Multiplication by t
    maps their space to itself, and its eigenvalues are the values of t. Pivots below the part `nothing` of the first one count as zero.
    Returns the dimension of the null space; a space of one dimension gives no pairs. */
@@ -802,14 +859,39 @@ static int ik_several(const ik_six_rows *six, ik_turn turn, double nothing, ik_t
 {
     double vectors[3][6], left[3][3], right[3][3], map[IK_SIZE][IK_SIZE] = { { 0.0 } }, values[IK_SIZE][2], rows[54];
     double factor, swap;
-    int n = ik_null_space(six, turn, 3, nothing, vectors), found, i, j, k, r, c;
+    ik_vector highs[3], lows[3], y;
+    int n = ik_null_space(six, turn, 3, nothing, vectors), dimension = n, found, rest, i, j, k, r, c;
     *count = 0;
     if (n < 2) return n;
+    ik_rows_at(six, turn, rows);
+    for (i = 0; i < n; i++) {
+        highs[i] = ik_half_of(vectors[i]);
+        lows[i] = ik_half_of(&vectors[i][3]);
+    }
+    /* Those that share the third angle first. */
+    if (ik_shared(highs, lows, n, &y, &rest)) {
+        ik_vector form = ik_vector_of(0.0, 0.0, 0.0), next;
+        ik_turn halves[2], other;
+        for (r = 0; r < 6; r++) {
+            const double *x = &rows[9 * r];
+            next = ik_vector_of(ik_dot(ik_half_of(x), y), ik_dot(ik_half_of(&x[3]), y), ik_dot(ik_half_of(&x[6]), y));
+            if (ik_dot(next, next) > ik_dot(form, form)) form = next;
+        }
+        if (ik_unit_of(y, &other)) {
+            found = ik_halves_of(form, halves);
+            for (i = 0; i < found; i++) {
+                pairs[*count][0] = ik_turn_of_half(halves[i]);
+                pairs[*count][1] = other;
+                *count += 1;
+            }
+        }
+        n = rest;
+    }
     /* high = low T, by normal equations, solved by elimination. */
     for (i = 0; i < n; i++)
         for (j = 0; j < n; j++) {
-            left[i][j] = ik_dot(ik_half_of(&vectors[i][3]), ik_half_of(&vectors[j][3]));
-            right[i][j] = ik_dot(ik_half_of(&vectors[i][3]), ik_half_of(vectors[j]));
+            left[i][j] = ik_dot(lows[i], lows[j]);
+            right[i][j] = ik_dot(lows[i], highs[j]);
         }
     for (k = 0; k < n; k++)
         for (r = 0; r < n; r++) {
@@ -843,7 +925,6 @@ static int ik_several(const ik_six_rows *six, ik_turn turn, double nothing, ik_t
         }
     }
     found = ik_eigenvalues(map, n, values);
-    ik_rows_at(six, turn, rows);
     for (i = 0; i < found; i++) {
         double t = values[i][0];
         ik_vector forms[6];
@@ -861,7 +942,7 @@ static int ik_several(const ik_six_rows *six, ik_turn turn, double nothing, ik_t
             *count += 1;
         }
     }
-    return n;
+    return dimension;
 }
 
 /* == joint == */
@@ -1065,26 +1146,31 @@ static ik_turn ik_turn_in_view(const ik_view *view, double u, double *square)
 }
 
 /* The determinant at u, as a trigonometric polynomial of this degree. */
-static double ik_value_in_view(const ik_view *view, const ik_six_rows *six, int degree, double u)
+static double ik_value_in_view(const ik_view *view, const ik_six_rows *six, int degree, double u, double *least)
 {
     double square, rows[36], sign = 1.0, factor, pivots, value;
     ik_turn turn = ik_turn_in_view(view, u, &square);
     int i;
-    factor = ik_reduced(six, turn, rows);
-    pivots = ik_clear(rows, 6, 6, &sign);
+    *least = 1.7976931348623157e308;
+    factor = ik_reduced(six, turn, rows, least);
+    pivots = ik_clear(rows, 6, 6, &sign, least);
     value = sign * factor * pivots;
     for (i = 0; i < degree; i++) value *= square;
     return value;
 }
 
-/* The waves of the determinant, from samples at equal steps. */
-static ik_waves ik_waves_in_view(const ik_view *view, const ik_six_rows *six, int degree)
+/* The waves of the determinant, from samples at equal steps, and the largest of the smallest pivots. */
+static ik_waves ik_waves_in_view(const ik_view *view, const ik_six_rows *six, int degree, double *clear)
 {
     ik_waves waves = { { { 0.0 } }, 0, 0.0, 0.0 };
-    double samples[IK_SAMPLES], table[IK_SAMPLES][2], step;
+    double samples[IK_SAMPLES], table[IK_SAMPLES][2], step, least;
     int n = 2 * degree + 1, at = 0, i, k, place;
+    *clear = 0.0;
     step = 6.283185307179586 / (double)n;
-    for (i = 0; i < n; i++) samples[i] = ik_value_in_view(view, six, degree, 6.283185307179586 * (double)i / (double)n);
+    for (i = 0; i < n; i++) {
+        samples[i] = ik_value_in_view(view, six, degree, 6.283185307179586 * (double)i / (double)n, &least);
+        if (least > *clear) *clear = least;
+    }
     for (i = 0; i < n; i++) {
         ik_cos_sin(step * (double)i, table[i]);
         if (ik_abs(samples[i]) > ik_abs(samples[at])) at = i;
@@ -1125,13 +1211,13 @@ static double ik_waves_at(const ik_waves *waves, double angle, double *slope)
    determinant itself and the slope of the waves, only where rounding matters. */
 static double ik_refined(const ik_six_rows *six, const ik_waves *waves, const ik_view *view, double start)
 {
-    double q = start, slope, doubt, change;
+    double q = start, slope, doubt, change, least;
     int i;
     for (i = 0; i < 8; i++) {
         ik_waves_at(waves, q, &slope);
         doubt = 1e-15 * waves->largest / ik_abs(slope);
         if (i == 0 && doubt < 1e-13) break;
-        change = -ik_value_in_view(view, six, waves->degree, q) / slope;
+        change = -ik_value_in_view(view, six, waves->degree, q, &least) / slope;
         if (!(ik_abs(change) < 0.05)) break;
         q += change;
         /* What is left is about this part of the change. */
@@ -1197,7 +1283,7 @@ static double ik_rise(const ik_waves *waves, double angle)
     return ik_abs(bends[0]) + IK_NEARLY_REAL * (ik_abs(bends[1]) + 0.5 * IK_NEARLY_REAL * ik_abs(bends[2]));
 }
 
-/* Most views of the polynomial of the first order: the whole circle, and places where it is flat. Others are asked for the whole. */
+/* Most views of the polynomial of an order: the whole circle, and places where it is flat. */
 #define IK_VIEWS 3
 
 /* Whether a turn is far from the centre of a narrow view: what is there shows better in the view before. */
@@ -1229,7 +1315,7 @@ static int ik_flats(const ik_six_rows *six, int degree, int squared, const ik_vi
         low = rise < IK_FLAT * waves->largest;
         if (!low && rise < 1e-7 * waves->largest) {
             /* Waves that are left out of an order because they are small may not be small here. */
-            miss = ik_value_in_view(view, six, degree, roots[i].angle) - ik_waves_at(waves, roots[i].angle, &slope);
+            miss = ik_value_in_view(view, six, degree, roots[i].angle, &least) - ik_waves_at(waves, roots[i].angle, &slope);
             low = ik_abs(miss) > 0.1 * rise;
         }
         if (low) rises[i] = rise;
@@ -1265,23 +1351,32 @@ static int ik_flats(const ik_six_rows *six, int degree, int squared, const ik_vi
     }
 }
 
-/* Adds the candidates that show in one view; says whether their roots lie apart. Places where the polynomial is all but zero are added to
-   the views, of which there are so many, and may be `most`. */
+/* How much an order has shown of what there is: nothing where it breaks down, not what is in flat places of which there were too many,
+   not all roots that nearly fall together, or everything. */
+enum { IK_NOTHING, IK_PART, IK_MOST, IK_ALL };
+
+/* Adds the candidates that show in one view; says how much they are of what is there. Places where the polynomial is all but zero are
+   added to the views, of which there are so many, and may be `most`. */
 static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int squared, ik_view views[IK_VIEWS], int at, int *count_views, int most,
                    double slack, ik_candidates *found)
 {
     const ik_view *view = &views[at];
-    ik_waves waves = ik_waves_in_view(view, six, degree);
+    double clear;
+    ik_waves waves = ik_waves_in_view(view, six, degree, &clear);
     ik_root roots[IK_SIZE];
-    int count = ik_roots_of_waves(&waves, squared, roots), multiplicity = squared ? 2 : 1, apart = count * multiplicity == 2 * degree;
+    int count, multiplicity = squared ? 2 : 1, apart;
     int done[IK_SIZE] = { 0 }, holds[IK_SIZE], near[IK_SIZE], together, pairs_found, fold, merged, many, more, flats, i, j, k;
-    double gap, square, shift, spread, mean, side, exact, off;
+    double gap, square, shift, spread, mean, side, exact, off, least;
     double starts[IK_SIZE], extremum[3], places[IK_VIEWS][2];
     ik_turn turn, turns[IK_SIZE], pairs[6][2];
+    /* A determinant of which one pivot is smaller than this everywhere is rounding alone: at some poses an order breaks down. */
+    if (clear < 1e-9) return view->width < 1.0 ? IK_MOST : IK_NOTHING;
+    count = ik_roots_of_waves(&waves, squared, roots);
+    apart = count * multiplicity == 2 * degree;
     for (i = 0; i < count; i++) turns[i] = ik_turn_by(roots[i].angle);
     flats = ik_flats(six, degree, squared, view, &waves, roots, turns, count, most - *count_views, places, holds, &more);
-    /* A determinant that is smaller than that everywhere is rounding alone: at some poses an order breaks down. */
-    if (more || (view->width >= 1.0 && !(waves.largest > 1e-22))) apart = 0;
+    /* Where one pivot is small everywhere solutions may be lost in rounding. */
+    if (!(clear > 1e-5)) apart = 0;
     for (i = 0; i < count; i++) {
         double angle = roots[i].angle, imaginary = roots[i].imaginary;
         if (done[i] || ik_beside(view, turns[i]) || ik_abs(imaginary) > IK_NEARLY_REAL + 5.0 * ik_sqrt(slack)) continue;
@@ -1312,7 +1407,7 @@ static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int 
         fold = together == 2 && !squared && slack == 0.0;
         many = 0;
         /* What the determinant itself is there also tells how far its waves are off. */
-        exact = fold ? ik_value_in_view(view, six, degree, extremum[0]) : extremum[1];
+        exact = fold ? ik_value_in_view(view, six, degree, extremum[0], &least) : extremum[1];
         off = ik_abs(exact - extremum[1]) + IK_FLAT * waves.largest;
         if (together == 1 || (fold && imaginary == 0.0 && ik_abs(exact) > off)) {
             starts[0] = ik_refined(six, &waves, view, angle);
@@ -1348,32 +1443,38 @@ static int ik_look(const ik_loop *loop, const ik_six_rows *six, int degree, int 
         views[*count_views].width = places[i][1] * view->width / square;
         (*count_views)++;
     }
-    return apart;
+    if (more) return IK_PART;
+    return apart ? IK_ALL : IK_MOST;
 }
 
-/* Adds the candidates of one order; says whether they are all that there are. */
+/* Adds the candidates of one order; says how much of all that there is they are. */
 static int ik_solve_order(const ik_line lines[6], const ik_motion *goal, const double *order, double slack, int most, ik_candidates *found)
 {
     ik_loop loop = ik_arrange(lines, goal, (int)order[0]);
     ik_six_rows six;
     /* Views that are left to look at, those of wide places before those within them. */
     ik_view views[IK_VIEWS];
-    int all = 1, before = found->count, next, end = 1;
+    int all = IK_ALL, before = found->count, shown, next, end = 1;
     ik_eliminate(loop.lines, &loop.goal, loop.swapped, &six);
     views[0].centre = ik_turn_of(1.0, 0.0);
     views[0].width = 1.0;
-    for (next = 0; next < end; next++) all &= ik_look(&loop, &six, (int)order[1], order[2] > 0.0, views, next, &end, most, slack, found);
-    return all && found->count > before;
+    for (next = 0; next < end; next++) {
+        shown = ik_look(&loop, &six, (int)order[1], order[2] > 0.0, views, next, &end, most, slack, found);
+        if (shown < all) all = shown;
+    }
+    return all == IK_ALL && found->count == before ? IK_MOST : all;
 }
 
 /* Candidate turns of six joints. The numbers are six lines as direction and point, the rows of the goal's rotation, its place, and three
-   orders as code, degree (zero for none), and whether the determinant is a square. The orders are tried until in one of them all roots
-   lie apart. Slack is for poses at which that gave nothing: at a goal nearby solutions are isolated, and near enough for a polish. */
+   orders as code, degree (zero for none), and whether the determinant is a square. Orders that break down at this goal are passed over, the
+   others are tried until one has shown all there is; where all break down goals nearby are solved. Slack is for poses at which that gave nothing: at a goal nearby solutions are isolated, and near enough for a polish. */
 static void ik_six(const double numbers[57], double slack, ik_candidates *found)
 {
     ik_line lines[6];
     ik_motion goal, near;
-    int first = 1, i;
+    const double beside[2] = { 1e-2, -1e-3 };
+    const double *orders[3];
+    int count = 0, sound = 0, shown, i;
     found->count = 0;
     for (i = 0; i < 57; i++)
         if (!ik_finite(numbers[i])) return;
@@ -1384,13 +1485,22 @@ static void ik_six(const double numbers[57], double slack, ik_candidates *found)
     for (i = 0; i < 3; i++) goal.rows[i] = ik_half_of(&numbers[36 + 3 * i]);
     goal.place = ik_half_of(&numbers[45]);
     if (slack > 0.0) goal = ik_nudged(&goal, 0.1 * slack);
-    for (i = 48; i < 57; i += 3) {
-        if (!(numbers[i + 1] > 0.0)) continue;
-        if (ik_solve_order(lines, &goal, &numbers[i], slack, first ? IK_VIEWS : 1, found) && !(slack > 0.0)) break;
-        /* Solutions that share the angle here do not at a goal nearby. */
-        near = ik_nudged(&goal, 1e-2);
-        if (first && !(slack > 0.0) && ik_solve_order(lines, &near, &numbers[i], slack, 1, found)) break;
-        first = 0;
+    for (i = 48; i < 57; i += 3)
+        if (numbers[i + 1] > 0.0) orders[count++] = &numbers[i];
+    for (i = 0; i < count; i++) {
+        shown = ik_solve_order(lines, &goal, orders[i], slack, IK_VIEWS, found);
+        if (shown == IK_ALL && !(slack > 0.0)) return;
+        if (shown == IK_NOTHING) continue;
+        /* Solutions that share the angle here do not at a goal nearby; but those that are nearly singular may not reach it. */
+        if (sound < 2 && !(slack > 0.0)) {
+            near = ik_nudged(&goal, beside[sound]);
+            if (ik_solve_order(lines, &near, orders[i], slack, 1, found) == IK_ALL && shown == IK_MOST) return;
+        }
+        sound++;
+    }
+    for (i = 0; i < 2 && sound == 0 && count > 0; i++) {
+        near = ik_nudged(&goal, beside[i]);
+        ik_solve_order(lines, &near, orders[i % count], slack, 1, found);
     }
 }
 
@@ -1641,9 +1751,9 @@ static double ik_swept_value(const ik_swept *swept, double x, int code)
 {
     ik_loop loop;
     ik_six_rows six;
-    double volume = ik_swept_at(swept, x, code, &loop, &six), rows[36], sign = 1.0, factor, pivots;
-    factor = ik_reduced(&six, ik_turn_of(1.0, 0.0), rows);
-    pivots = ik_clear(rows, 6, 6, &sign);
+    double volume = ik_swept_at(swept, x, code, &loop, &six), rows[36], sign = 1.0, factor, pivots, least = 1.0;
+    factor = ik_reduced(&six, ik_turn_of(1.0, 0.0), rows, &least);
+    pivots = ik_clear(rows, 6, 6, &sign, &least);
     return volume * (sign * factor * pivots);
 }
 

@@ -293,38 +293,40 @@ pub struct Reduced {
     pub rows: [[f64; 6]; 6],
     /// Product of the pivots so far.
     pub factor: f64,
+    /// Magnitude of the smallest of them.
+    pub least: f64,
 }
 
 /// Reduces the system.
 pub fn reduced(six: &Six, turn: [f64; 2]) -> Reduced {
     let mut rows = at(six, turn);
     // The same steps act on the equations and on their multiples, so that the sign of exchanges cancels.
-    let (first, _) = clear(&mut rows, 3);
+    let (first, _, least) = clear(&mut rows, 3);
     let mut next = [[0.0; 9]; 6];
     for r in 0..3 {
         next[r][..6].copy_from_slice(&rows[3 + r][3..]);
         next[3 + r] = rows[r];
     }
-    let (second, sign) = clear(&mut next, 3);
+    let (second, sign, next_least) = clear(&mut next, 3);
     let mut left = [[0.0; 6]; 6];
     for r in 0..3 {
         left[r].copy_from_slice(&next[3 + r][3..]);
         left[3 + r].copy_from_slice(&rows[3 + r][3..]);
     }
-    Reduced { rows: left, factor: sign * first * second }
+    Reduced { rows: left, factor: sign * first * second, least: least.min(next_least) }
 }
 
-/// The determinant whose roots are the values of `q3`.
-pub fn determinant(six: &Six, turn: [f64; 2]) -> f64 {
-    let Reduced { mut rows, factor } = reduced(six, turn);
-    let (pivots, sign) = clear(&mut rows, 6);
-    sign * factor * pivots
+/// The determinant whose roots are the values of `q3`, and the magnitude of its smallest pivot.
+pub fn determinant(six: &Six, turn: [f64; 2]) -> (f64, f64) {
+    let Reduced { mut rows, factor, least } = reduced(six, turn);
+    let (pivots, sign, last) = clear(&mut rows, 6);
+    (sign * factor * pivots, least.min(last))
 }
 
-/// Clears the first columns below the diagonal, with row exchanges; returns the product of the pivots, and the sign of
-/// the exchanges.
-fn clear<const C: usize>(rows: &mut [[f64; C]; 6], columns: usize) -> (f64, f64) {
-    let (mut product, mut sign) = (1.0, 1.0);
+/// Clears the first columns below the diagonal, with row exchanges; returns the product of the pivots, the sign of the
+/// exchanges, and the magnitude of the smallest pivot.
+fn clear<const C: usize>(rows: &mut [[f64; C]; 6], columns: usize) -> (f64, f64, f64) {
+    let (mut product, mut sign, mut least) = (1.0, 1.0, f64::INFINITY);
     for k in 0..columns {
         let mut pivot = k;
         for r in k + 1..6 {
@@ -339,6 +341,7 @@ fn clear<const C: usize>(rows: &mut [[f64; C]; 6], columns: usize) -> (f64, f64)
         let (top, below) = rows.split_at_mut(k + 1);
         let top = &top[k];
         product *= top[k];
+        least = least.min(top[k].abs());
         if top[k] == 0.0 {
             continue;
         }
@@ -351,7 +354,7 @@ fn clear<const C: usize>(rows: &mut [[f64; C]; 6], columns: usize) -> (f64, f64)
             }
         }
     }
-    (product, sign)
+    (product, sign, least)
 }
 
 /// How the sampled angle is looked at: `tan((q3 - centre) / 2) = width tan(u / 2)`.
@@ -381,21 +384,28 @@ impl View {
     /// The determinant at `u`, as a trigonometric polynomial of this degree.
     pub fn value(&self, six: &Six, degree: usize, u: f64) -> f64 {
         let (turn, square) = self.turn(u);
-        let mut value = determinant(six, turn);
+        let (mut value, _) = determinant(six, turn);
         for _ in 0..degree {
             value *= square;
         }
         value
     }
 
-    /// Samples of that at equal steps of `u`, as many as its degree asks for.
-    pub fn samples(&self, six: &Six, degree: usize) -> [f64; MAX_SAMPLES] {
+    /// Samples of that at equal steps of `u`, as many as its degree asks for, and the largest of the smallest pivots.
+    pub fn samples(&self, six: &Six, degree: usize) -> ([f64; MAX_SAMPLES], f64) {
         let mut samples = [0.0; MAX_SAMPLES];
         let n = 2 * degree + 1;
+        let mut clear = 0.0f64;
         for (i, x) in samples.iter_mut().enumerate().take(n) {
-            *x = self.value(six, degree, core::f64::consts::TAU * i as f64 / n as f64);
+            let (turn, square) = self.turn(core::f64::consts::TAU * i as f64 / n as f64);
+            let (value, least) = determinant(six, turn);
+            *x = value;
+            for _ in 0..degree {
+                *x *= square;
+            }
+            clear = clear.max(least);
         }
-        samples
+        (samples, clear)
     }
 
     /// Whether a turn of `u` is far from the centre of a narrow view: what is there shows better in the view before.

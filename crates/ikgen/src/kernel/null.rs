@@ -2,8 +2,9 @@
 
 use super::eigen::{MAX_SIZE, Square, hessenberg_eigenvalues};
 use super::elimination::{Six, View, at, reduced, turn_of_half};
+use super::math::sqrt;
 use super::roots::circle;
-use super::vector::{Vector, cross, dot, unit};
+use super::vector::{Vector, cross, dot, minus, times, unit};
 use super::waves::Waves;
 
 /// A pivot that is smaller than this part of the first one counts as zero.
@@ -11,6 +12,9 @@ const NOTHING: f64 = 1e-6;
 
 /// A pivot that is larger than this part is clear of zero.
 const NEARLY_NOTHING: f64 = 1e-3;
+
+/// Below the square of this angle, about, two third angles are one.
+const SHARED: f64 = 1e-8;
 
 /// The turn whose half tangent was eliminated, and the one beside it.
 pub type Pair = [[f64; 2]; 2];
@@ -130,13 +134,35 @@ fn mixed(six: &Six, turn: [f64; 2], nothing: f64, mut found: impl FnMut(Pair)) -
     if n < 2 {
         return n;
     }
-    // high = low T, by normal equations low^T low T = low^T high, solved by elimination.
+    let (mut highs, mut lows) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
+    for i in 0..n {
+        (highs[i], lows[i]) = halves(&vectors[i]);
+    }
+    let rows = at(six, turn);
+    // Those that share the third angle first.
+    let mut others = n;
+    if let Some((y, rest)) = shared(&mut highs, &mut lows, n) {
+        others = rest;
+        let mut form = [0.0; 3];
+        for row in &rows {
+            let next = [0, 3, 6].map(|k| dot([row[k], row[k + 1], row[k + 2]], y));
+            if dot(next, next) > dot(form, form) {
+                form = next;
+            }
+        }
+        let sign = if y[0] < 0.0 { -1.0 } else { 1.0 };
+        if let Some(other) = unit(sign * y[1], sign * y[2], 0.0) {
+            halves_of(form, |half| found([turn_of_half(half), other]));
+        }
+    }
+    let (dimension, n) = (n, others);
+    // high = low T, by normal equations, solved by elimination.
     let mut left = [[0.0; 3]; 3];
     let mut right = [[0.0; 3]; 3];
     for i in 0..n {
         for j in 0..n {
-            left[i][j] = dot(halves(&vectors[i]).1, halves(&vectors[j]).1);
-            right[i][j] = dot(halves(&vectors[i]).1, halves(&vectors[j]).0);
+            left[i][j] = dot(lows[i], lows[j]);
+            right[i][j] = dot(lows[i], highs[j]);
         }
     }
     for k in 0..n {
@@ -161,7 +187,6 @@ fn mixed(six: &Six, turn: [f64; 2], nothing: f64, mut found: impl FnMut(Pair)) -
     }
     let mut values = [[0.0; 2]; MAX_SIZE];
     let count = hessenberg_eigenvalues(&mut map, n, &mut values);
-    let rows = at(six, turn);
     for [t, imaginary] in &values[..count] {
         if imaginary.abs() > 1e-3 * (1.0 + t * t) {
             continue;
@@ -176,7 +201,58 @@ fn mixed(six: &Six, turn: [f64; 2], nothing: f64, mut found: impl FnMut(Pair)) -
         }
         third(&forms, |other| found([turn_of_half(half), other]));
     }
-    n
+    dimension
+}
+
+/// The third angle, as a multiple of `1, c, s`, that two solutions share which differ in `t`: both `(y, 0)` and `(0, y)` are null vectors
+/// then, and no map says what `t` is. Also how many of the vectors are of others; they come first, with nothing of `y` left in them.
+fn shared(highs: &mut [Vector; 3], lows: &mut [Vector; 3], n: usize) -> Option<(Vector, usize)> {
+    for k in 0..n - 1 {
+        let mut longest = k;
+        for i in k + 1..n {
+            if dot(lows[i], lows[i]) > dot(lows[longest], lows[longest]) {
+                longest = i;
+            }
+        }
+        lows.swap(k, longest);
+        highs.swap(k, longest);
+        for i in k + 1..n {
+            let part = dot(lows[i], lows[k]) / dot(lows[k], lows[k]);
+            lows[i] = minus(lows[i], times(lows[k], part));
+            highs[i] = minus(highs[i], times(highs[k], part));
+        }
+    }
+    let (y, low) = (highs[n - 1], lows[n - 1]);
+    let square = dot(y, y);
+    if !(dot(low, low) < SHARED * square) {
+        return None;
+    }
+    let mut longest = 0;
+    let mut most = 0.0;
+    for i in 0..n - 1 {
+        let before = dot(lows[i], lows[i]);
+        lows[i] = minus(lows[i], times(y, dot(lows[i], y) / square));
+        highs[i] = minus(highs[i], times(y, dot(highs[i], y) / square));
+        let part = dot(lows[i], lows[i]) / before;
+        if part > most {
+            (longest, most) = (i, part);
+        }
+    }
+    lows.swap(0, longest);
+    highs.swap(0, longest);
+    Some((y, usize::from(most > SHARED)))
+}
+
+/// The halves of turns, as vectors along them, with `a t^2 + b t + c = 0`.
+fn halves_of([a, b, c]: Vector, mut found: impl FnMut([f64; 2])) {
+    let square = b * b - 4.0 * a * c;
+    if !(square > -SHARED * (b * b + 4.0 * (a * c).abs())) {
+        return;
+    }
+    let far = if b < 0.0 { b - sqrt(square) } else { b + sqrt(square) };
+    for half in [unit(-2.0 * a, far, 0.0), unit(far, -2.0 * c, 0.0)].into_iter().flatten() {
+        found(half);
+    }
 }
 
 /// A similar matrix of three rows whose lower left corner is zero.

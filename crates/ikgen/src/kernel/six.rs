@@ -95,13 +95,16 @@ const FAINT: f64 = 1e-7;
 /// The polynomial is off where it misses the determinant by this part of what it rises to nearby.
 const OFF: f64 = 0.1;
 
-/// A determinant that is smaller everywhere is rounding alone: at some poses an order breaks down.
-const BROKEN: f64 = 1e-22;
+/// A determinant of which one pivot is smaller than this everywhere is rounding alone: at some poses an order breaks down.
+const BROKEN: f64 = 1e-9;
+
+/// Where one pivot is smaller than this everywhere, solutions may be lost in rounding.
+const MURKY: f64 = 1e-5;
 
 /// Rounding of the polynomial, as part of the largest sample, where it is small.
 const ROUNDING: f64 = 1e-14;
 
-/// Most views of the polynomial of the first order: the whole circle, and places where it is flat. Others are asked for the whole.
+/// Most views of the polynomial of an order: the whole circle, and places where it is flat.
 const MOST_VIEWS: usize = 3;
 
 /// Roots that are nearer to each other may be one.
@@ -113,8 +116,8 @@ const MERGED: f64 = 1e-5;
 /// A candidate is one only if its loop closes to this part of its size, and to this angle.
 const OPEN: f64 = 1.0;
 
-/// How far the goal is at which solutions are looked for that fall together.
-const BESIDE: f64 = 1e-2;
+/// How far the goals are at which solutions are looked for that fall together, in the first order that is sound and in the second.
+const BESIDE: [f64; 2] = [1e-2, -1e-3];
 
 /// Number of orders.
 pub const ORDERS: usize = 24;
@@ -217,23 +220,35 @@ fn align(axis: Vector, from: [Vector; 2], to: [Vector; 2]) -> Option<[f64; 2]> {
     unit(x, y, 0.0)
 }
 
-/// Candidates for `e1 ... e6 = goal`: the joints' lines at zero turn. The orders are tried one after the other until in
-/// one of them all roots lie apart.
+/// Candidates for `e1 ... e6 = goal`: the joints' lines at zero turn. Orders that break down at this goal are passed over, the others are
+/// tried one after the other until one has shown all there is. Where all break down, goals nearby are solved.
 ///
 /// Slack is for poses at which that gave nothing. Solutions are then a continuum, or many fall together. At a goal nearby
 /// they are isolated, and near enough for a polish.
 pub fn six(lines: &[Line; 6], goal: &Motion, orders: &[Order], slack: f64) -> Candidates {
     let mut found = Candidates::NONE;
     let goal = if slack > 0.0 { nudged(goal, 0.1 * slack) } else { *goal };
-    for (i, order) in orders.iter().enumerate() {
-        let most = if i == 0 { MOST_VIEWS } else { 1 };
-        if solve(lines, &goal, *order, slack, most, &mut found) && slack == 0.0 {
-            break;
+    let mut sound = 0;
+    for order in orders {
+        let shown = solve(lines, &goal, *order, slack, MOST_VIEWS, &mut found);
+        if shown == Shown::All && slack == 0.0 {
+            return found;
         }
-        // Solutions that share the angle here do not at a goal nearby.
-        let near = nudged(&goal, BESIDE);
-        if i == 0 && slack == 0.0 && solve(lines, &near, *order, slack, 1, &mut found) {
-            break;
+        if shown == Shown::Nothing {
+            continue;
+        }
+        // Solutions that share the angle here do not at a goal nearby; but those that are nearly singular may not reach it.
+        if sound < BESIDE.len() && slack == 0.0 {
+            let near = nudged(&goal, BESIDE[sound]);
+            if solve(lines, &near, *order, slack, 1, &mut found) == Shown::All && shown == Shown::Most {
+                return found;
+            }
+        }
+        sound += 1;
+    }
+    if sound == 0 && !orders.is_empty() {
+        for (i, size) in BESIDE.into_iter().enumerate() {
+            solve(lines, &nudged(&goal, size), orders[i % orders.len()], slack, 1, &mut found);
         }
     }
     found
@@ -249,7 +264,20 @@ pub fn nudged(goal: &Motion, size: f64) -> Motion {
     Motion { rows, place: plus(goal.place, times([0.64, 0.48, -0.6], size)) }
 }
 
-/// Adds the candidates of one order; says whether they are all that there are.
+/// How much an order has shown of what there is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd)]
+enum Shown {
+    /// It breaks down at this goal.
+    Nothing,
+    /// Not what is in flat places: there were too many.
+    Part,
+    /// Not all roots that nearly fall together could be told apart.
+    Most,
+    /// Everything.
+    All,
+}
+
+/// Adds the candidates of one order; says how much of all that there is they are.
 fn solve(
     lines: &[Line; 6],
     goal: &Motion,
@@ -257,24 +285,26 @@ fn solve(
     slack: f64,
     most: usize,
     found: &mut Candidates,
-) -> bool {
+) -> Shown {
     let loop_ = arrange(lines, goal, order.code);
     let six = eliminate(&loop_.lines, &loop_.goal, loop_.swapped);
     // Views that are left to look at, those of wide places before those within them.
     let (mut views, mut next, mut end) = ([View::WHOLE; MOST_VIEWS], 0, 1);
-    let mut all = true;
+    let mut all = Shown::All;
     let before = found.len;
     while next < end {
         let view = views[next];
         next += 1;
-        let (apart, flats) = look(&loop_, &six, order, &view, slack, most - end, found);
-        all &= apart;
+        let (shown, flats) = look(&loop_, &six, order, &view, slack, most - end, found);
+        if shown < all {
+            all = shown;
+        }
         for (u, width) in &flats.places[..flats.count] {
             views[end] = view.zoomed(*u, *width);
             end += 1;
         }
     }
-    all && found.len > before
+    if all == Shown::All && found.len == before { Shown::Most } else { all }
 }
 
 /// Places where a polynomial is all but zero, and how widely.
@@ -288,6 +318,10 @@ struct Flats {
 }
 
 impl Flats {
+    /// None.
+    const NONE: Flats =
+        Flats { places: [(0.0, 1.0); MOST_VIEWS], count: 0, holds: [false; MAX_SIZE], more: false };
+
     /// So many of them, flattest first, as wide as the roots reach that rounding has moved.
     fn new(
         six: &Six,
@@ -317,8 +351,7 @@ impl Flats {
                 rises[i] = rise;
             }
         }
-        let mut flats =
-            Flats { places: [(0.0, 1.0); MOST_VIEWS], count: 0, holds: [false; MAX_SIZE], more: false };
+        let mut flats = Flats::NONE;
         loop {
             let (mut least, mut at) = (f64::MAX, 0);
             for (i, rise) in rises.iter().enumerate() {
@@ -356,7 +389,7 @@ fn between([a, b]: [f64; 2], [c, s]: [f64; 2]) -> [f64; 2] {
     [a * c + b * s, a * s - b * c]
 }
 
-/// Adds the candidates that show in one view; says whether their roots lie apart, and where the polynomial is all but zero,
+/// Adds the candidates that show in one view; says how much they are of what is there, and where the polynomial is all but zero,
 /// if it is, and how widely.
 fn look(
     loop_: &Arranged,
@@ -366,8 +399,12 @@ fn look(
     slack: f64,
     most: usize,
     found: &mut Candidates,
-) -> (bool, Flats) {
-    let waves = Waves::new(&view.samples(six, order.degree), order.degree);
+) -> (Shown, Flats) {
+    let (samples, clear) = view.samples(six, order.degree);
+    if clear < BROKEN {
+        return (if view.width < 1.0 { Shown::Most } else { Shown::Nothing }, Flats::NONE);
+    }
+    let waves = Waves::new(&samples, order.degree);
     let mut roots = [Root { angle: 0.0, imaginary: 0.0 }; MAX_SIZE];
     let count = waves.roots(order.squared, &mut roots);
     let multiplicity = if order.squared { 2 } else { 1 };
@@ -375,7 +412,7 @@ fn look(
     let mut apart = count * multiplicity == 2 * order.degree;
     let flats = Flats::new(six, order, view, &waves, &roots[..count], &turns, most);
     let mut done = [false; MAX_SIZE];
-    apart &= !flats.more && (view.width < 1.0 || waves.largest > BROKEN);
+    apart &= clear > MURKY;
     let mut add = |turn, [tangent, other]: Pair| {
         let middle = if loop_.swapped { [turn, other, tangent] } else { [turn, tangent, other] };
         if let Some([q1, q2, q6]) = close(loop_, middle) {
@@ -459,14 +496,15 @@ fn look(
             }
         }
     }
-    (apart, flats)
+    let told = if apart { Shown::All } else { Shown::Most };
+    (if flats.more { Shown::Part } else { told }, flats)
 }
 
 /// The determinant of an order, from which the compiler learns its degree.
 pub fn waves_of(lines: &[Line; 6], goal: &Motion, code: usize) -> Waves {
     let loop_ = arrange(lines, goal, code);
     let six = eliminate(&loop_.lines, &loop_.goal, loop_.swapped);
-    Waves::new(&View::WHOLE.samples(&six, MAX_DEGREE), MAX_DEGREE)
+    Waves::new(&View::WHOLE.samples(&six, MAX_DEGREE).0, MAX_DEGREE)
 }
 
 /// Numbers that [`six_of`] takes: six lines as direction and point, the rows of the goal's rotation, its place, and

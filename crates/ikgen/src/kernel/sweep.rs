@@ -156,7 +156,7 @@ impl<'a> Ordered<'a> {
 
     fn value(&self, x: f64) -> f64 {
         let (_, six, volume) = self.eliminated(x);
-        volume * determinant(&six, [1.0, 0.0])
+        volume * determinant(&six, [1.0, 0.0]).0
     }
 }
 

@@ -1,5 +1,6 @@
 //! Proof of a solver: what it solved of random and singular poses, judged by the independent checker.
 
+pub mod complete;
 pub mod poses;
 
 use robotc_core::Seed;

@@ -37,7 +37,7 @@ pub struct Arm {
 impl Kind for IkSolver {
     const NAME: &'static str = "ik_solver";
     const FORMAT: u32 = 1;
-    const ALGORITHM: u32 = 6;
+    const ALGORITHM: u32 = 7;
     const PORTABILITY: Portability = Portability::Portable;
     const DOC: &'static str = "The program that finds all joint values of an arm for a pose of its tip. Planning and the maps call it.";
 
