@@ -32,8 +32,8 @@ use robotc_planning::placement::{
 use robotc_planning::scene::Scene as PlannedScene;
 use robotc_planning::space::{Axis, Space};
 
-/// Trials of each scene in a block; the distributions take turns by blocks.
-const TRIALS: u64 = 25;
+/// Goals of all trials of a scene in a block; the distributions take turns by blocks.
+const TOGETHER: usize = 2500;
 const BLOCKS: u64 = 4;
 
 /// Goals drawn in each trial.
@@ -291,8 +291,9 @@ fn block<D: BaseDistribution>(
     (number, goals): (u64, usize),
     outcome: &mut Outcome,
 ) {
+    let trials = (TOGETHER / goals) as u64;
     let start = super::processor_seconds();
-    for seed in number * TRIALS..(number + 1) * TRIALS {
+    for seed in number * trials..(number + 1) * trials {
         trial(problem, &make, tools, Seed::new(seed), goals, outcome);
     }
     outcome.seconds += super::processor_seconds() - start;

@@ -39,18 +39,25 @@ enum Care {
 /// Obstacles smaller than this, and spheres below those of this radius, are not glanced at, metres.
 const SMALL: f32 = 0.07;
 
+/// States that are looked at together before all that lanes take, where the first free one will do: often one of them is, and a few take
+/// less time than many.
+const FEW: usize = 4;
+
+/// Lanes are filled from the first state on, and every state is looked at.
+const ALL: (usize, fn(&[Sight]) -> bool) = (MOST_LANES, |_| false);
+
 impl LaneChecker<'_> {
     /// In which of these states the robot is certainly in an obstacle, as far as a few spheres inside of it tell. The others are
     /// [open](Sight::Open): nothing is said of links that touch each other, nor of what is touched slightly. Meant for states that are
     /// only near those that matter.
     pub fn glances<'q>(&mut self, states: impl IntoIterator<Item = &'q [f64]>) -> Vec<Sight> {
-        self.look_at_each(states, Care::Glance, |_, _, _| None)
+        self.look_at_each(states, Care::Glance, ALL, |_, _, _| None)
     }
 
     /// Whether links stay apart from each other in each of these states; obstacles are not looked at.
     pub fn apart<'q>(&mut self, states: impl IntoIterator<Item = &'q [f64]>) -> Vec<bool> {
         let settled = |checker: &mut Self, q: &[f64], lane: usize| Some(checker.settle_state(q, lane));
-        let sights = self.look_at_each(states, Care::Itself, settled);
+        let sights = self.look_at_each(states, Care::Itself, ALL, settled);
         sights.into_iter().map(|sight| sight == Sight::Free).collect()
     }
 
@@ -64,7 +71,7 @@ impl LaneChecker<'_> {
             Sight::Blocked(by) => Err(by),
             Sight::Free | Sight::Open => Ok(()),
         };
-        self.look_at_each(states, Care::Full, settled).into_iter().map(outcome).collect()
+        self.look_at_each(states, Care::Full, ALL, settled).into_iter().map(outcome).collect()
     }
 
     /// The first of these states that is free, and what blocks those before it: all of them when none is free.
@@ -81,18 +88,21 @@ impl LaneChecker<'_> {
                 sight
             })
         };
-        let sights = self.look_at_each(states, Care::Full, settled);
+        let sights =
+            self.look_at_each(states, Care::Full, (FEW, |seen| seen.contains(&Sight::Free)), settled);
         let free = sights.iter().position(|sight| *sight == Sight::Free);
         let before = sights[..free.unwrap_or(sights.len())].iter();
         let why = before.filter_map(|sight| if let Sight::Blocked(by) = sight { Some(*by) } else { None });
         (free, why.collect())
     }
 
-    /// What spheres tell of each state, or of those that they leave open, `settle` for a state and its lane.
+    /// What spheres tell of each state, or of those that they leave open, `settle` for a state and its lane. No more than `first` are
+    /// looked at together at first; no more are looked at when what was seen is `enough`.
     fn look_at_each<'q>(
         &mut self,
         states: impl IntoIterator<Item = &'q [f64]>,
         care: Care,
+        (first, enough): (usize, fn(&[Sight]) -> bool),
         mut settle: impl FnMut(&mut Self, &[f64], usize) -> Option<Sight>,
     ) -> Vec<Sight> {
         let mut sights = Vec::new();
@@ -101,11 +111,12 @@ impl LaneChecker<'_> {
             let mut block: [&[f64]; MOST_LANES] = [&[]; MOST_LANES];
             let mut count = 0;
             // Blocks end where lanes do.
-            for state in states.by_ref().take(self.width.lanes()) {
+            let most = if sights.is_empty() { first.min(self.width.lanes()) } else { self.width.lanes() };
+            for state in states.by_ref().take(most) {
                 block[count] = state;
                 count += 1;
             }
-            if count == 0 {
+            if count == 0 || enough(&sights) {
                 return sights;
             }
             self.statistics.looks += count as u64;
