@@ -80,6 +80,9 @@ const TOGETHER: usize = 16;
 /// Of these, those for the same grasp: to find how well a grasp is reached takes as long as many draws.
 const EACH: usize = 4;
 
+/// Grasps are compared with the best one, which is found again whenever so many were chosen.
+const WEIGHED: u32 = 16;
+
 /// A posture is only near one that reaches, and what is in the way of the one may not be in the way of the other. So of every so many
 /// places one is tried in any case.
 const UNSIFTED: u32 = 128;
@@ -139,7 +142,8 @@ impl fmt::Display for PlacementRejections {
 /// Arms, grasps and places of the base, in proportion to how well the arms reach them; a sampler that never repeats a
 /// rejected grasp and can be resumed.
 ///
-/// How well a grasp is reached is found when it is drawn for the first time, and then compared with the best one so far.
+/// How well a grasp is reached is found when it is drawn for the first time, and then compared with the best one so far. What obstacles
+/// leave of that is learned: a grasp counts by the share of its places that were goals, too.
 pub struct BasePlacement<'a, P: ?Sized, D: ?Sized> {
     problem: &'a mut P,
     distribution: &'a mut D,
@@ -147,9 +151,13 @@ pub struct BasePlacement<'a, P: ?Sized, D: ?Sized> {
     options: PlacementOptions,
     rng: Rng,
     left: Vec<Left>,
+    /// For each arm and each grasp.
+    tallies: Vec<Vec<Tally>>,
     /// Places that came with a posture and are still to be tried, last one first.
     stands: Vec<(usize, usize, Stand)>,
-    /// How many were drawn with a posture.
+    /// How many grasps were chosen.
+    choices: u32,
+    /// How many places were drawn with a posture.
     drawn: u32,
     /// What is behind the goals handed out, in their order.
     pub placements: Vec<Placement>,
@@ -161,7 +169,7 @@ pub struct BasePlacement<'a, P: ?Sized, D: ?Sized> {
 struct Left {
     arm: usize,
     grasps: Vec<LeftGrasp>,
-    /// The largest mass that was found.
+    /// The largest worth that was found: mass, times the share of places that are goals.
     most: f64,
 }
 
@@ -172,6 +180,20 @@ struct LeftGrasp {
     mass: Option<f64>,
     /// Whether the gripper was found free.
     checked: bool,
+}
+
+/// What came of the places of a grasp.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tally {
+    places: u32,
+    goals: u32,
+}
+
+impl Tally {
+    /// The share of them that are goals; that of one more, as long as little is known.
+    fn share(self) -> f64 {
+        f64::from(self.goals + 1) / f64::from(self.places + 1)
+    }
 }
 
 impl<'a, P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> BasePlacement<'a, P, D> {
@@ -195,8 +217,10 @@ impl<'a, P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> BasePlaceme
             arms,
             options,
             rng: seed.rng(),
+            tallies: arms.iter().map(|arm| vec![Tally::default(); arm.grasps.len()]).collect(),
             left: left.filter(|left| !left.grasps.is_empty()).collect(),
             stands: Vec::new(),
+            choices: 0,
             drawn: 0,
             placements: Vec::new(),
             rejections: PlacementRejections::default(),
@@ -217,8 +241,21 @@ impl<'a, P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> BasePlaceme
         chosen.unwrap_or(self.left.len() - 1)
     }
 
+    /// Finds the best grasps again, as far as grasps are known: what is worth less and less would be compared with what it was once.
+    fn weigh(&mut self) {
+        for Left { arm, grasps, most } in &mut self.left {
+            let tallies = &self.tallies[*arm];
+            let worth = |g: &LeftGrasp| g.mass.map(|mass| mass * tallies[g.grasp].share());
+            *most = grasps.iter().filter_map(worth).fold(0.0, f64::max);
+        }
+    }
+
     /// An arm and a grasp of it that the gripper may take; `None` when none are left.
     fn choose(&mut self) -> Option<(usize, usize)> {
+        self.choices = self.choices.wrapping_add(1);
+        if self.choices.is_multiple_of(WEIGHED) {
+            self.weigh();
+        }
         while !self.left.is_empty() {
             let number = self.choose_arm();
             let chosen = self.rng.below(self.left[number].grasps.len());
@@ -227,11 +264,12 @@ impl<'a, P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> BasePlaceme
             let grasp = *grasp;
             let world_from_tool = &self.arms[arm].grasps[grasp];
             let known = *mass.get_or_insert_with(|| self.distribution.mass(arm, world_from_tool));
-            left.most = left.most.max(known);
+            let worth = known * self.tallies[arm][grasp].share();
+            left.most = left.most.max(worth);
             let mut gone = known <= 0.0;
             if gone {
                 self.rejections.hopeless += 1;
-            } else if self.rng.unit() * left.most > known {
+            } else if self.rng.unit() * left.most > worth {
                 continue;
             } else if !*checked {
                 *checked = true;
@@ -260,12 +298,13 @@ impl<'a, P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> BasePlaceme
         }
         let next = self.stands.pop()?;
         self.rejections.places += 1;
+        self.tallies[next.0][next.1].places += 1;
         Some(next)
     }
 
     /// Draws places that are worth trying, last one first.
     fn draw_stands(&mut self) {
-        let (mut stands, mut of) = (Vec::with_capacity(TOGETHER), Vec::with_capacity(TOGETHER));
+        let (mut stands, mut of) = (Vec::new(), Vec::new());
         'drawing: while stands.len() < TOGETHER {
             let Some((arm, grasp)) = self.choose() else { break };
             let world_from_tool = &self.arms[arm].grasps[grasp];
@@ -289,6 +328,7 @@ impl<'a, P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> BasePlaceme
             match touched.filter(|_| !in_any_case) {
                 None => self.stands.push((arm, grasp, stand)),
                 Some(by) => {
+                    self.tallies[arm][grasp].places += 1;
                     self.rejections.places += 1;
                     self.rejections.sifted += 1;
                     self.reject(by);
@@ -314,6 +354,7 @@ impl<'a, P: PlacementProblem + ?Sized, D: BaseDistribution + ?Sized> BasePlaceme
         self.rejections.configurations += blocked.len() as u32;
         blocked.into_iter().for_each(|by| self.reject(by));
         let q = solutions.into_iter().nth(free?)?;
+        self.tallies[arm][grasp].goals += 1;
         Some(Placement { arm, grasp, base, q })
     }
 
