@@ -1467,7 +1467,8 @@ static int ik_solve_order(const ik_line lines[6], const ik_motion *goal, const d
 
 /* Candidate turns of six joints. The numbers are six lines as direction and point, the rows of the goal's rotation, its place, and three
    orders as code, degree (zero for none), and whether the determinant is a square. Orders that break down at this goal are passed over, the
-   others are tried until one has shown all there is; where all break down goals nearby are solved. Slack is for poses at which that gave nothing: at a goal nearby solutions are isolated, and near enough for a polish. */
+   others are tried until one has shown all there is; where all break down goals nearby are solved. Slack is for poses at which that gave
+   nothing: at a goal nearby solutions are isolated, and near enough for a polish. */
 static void ik_six(const double numbers[57], double slack, ik_candidates *found)
 {
     ik_line lines[6];
