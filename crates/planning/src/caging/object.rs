@@ -160,16 +160,6 @@ impl<'a, C: EdgeChecker> CagedObject<'a, C> {
         self.steps[step].world_from_part * self.grasps[grasp].part_from_tool
     }
 
-    /// Whether the arm reaches a grasp at a step, with some values of its free joints and whatever is in the way.
-    pub fn is_within_reach(&mut self, step: usize, grasp: usize) -> bool {
-        let (world_from_tool, values) = (self.world_from_tool(step, grasp), self.free_values(None));
-        let reaches = |free: Vec<f64>| {
-            let (solutions, _) = self.arm.inverse(&world_from_tool, &free, &self.rest, &mut self.scratch);
-            !solutions.is_empty()
-        };
-        values.into_iter().any(reaches)
-    }
-
     /// Values of the free joints to try.
     fn free_values(&self, near: Option<&[f64]>) -> Vec<Vec<f64>> {
         let mut all: Vec<Vec<f64>> = vec![vec![]];

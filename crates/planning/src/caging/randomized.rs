@@ -248,13 +248,7 @@ impl<T: ArticulatedTask + ?Sized> Search<'_, T> {
                 if draws > self.options.max_draws {
                     return Err(CagingFailureReason::Iterations);
                 }
-                let goes_on = !self.tree.nodes[node].drawn;
-                let is_new = self.draw_from(node, rng);
-                children += u32::from(is_new);
-                // What goes on in the same grasp is what works most often: it goes first, as far as it gets.
-                if goes_on && is_new {
-                    break;
-                }
+                children += u32::from(self.draw_from(node, rng));
             }
             if !self.tree.nodes[node].pool.is_empty() {
                 // Later it may be worth another look.

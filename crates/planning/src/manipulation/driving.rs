@@ -69,7 +69,7 @@ impl Manipulation<'_> {
 
 /// Shares of the draws that searches for a way of a door or a drawer get at each place, stage by stage: what can be opened from a place
 /// is mostly opened soon, and another place is worth more than a long search from one that is no good.
-const STAGES: [f64; 4] = [0.0005, 0.002, 0.02, 0.1];
+const STAGES: [f64; 3] = [0.002, 0.02, 0.1];
 
 /// A place to stand, and how the base gets there.
 struct Place {

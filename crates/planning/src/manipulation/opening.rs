@@ -41,7 +41,7 @@ pub(super) struct ArticleWay {
 /// An article nearer to its goal than this, radians or metres, is there.
 const THERE: f64 = 1e-6;
 
-/// Shares of the draws of a search that each round gets, after a first one for ways that are easily found.
+/// Shares of the draws of a search that each round gets.
 const ROUNDS: [f64; 4] = [0.002, 0.01, 0.1, 1.0];
 
 /// Most starts that are searched from.
@@ -102,7 +102,6 @@ pub(super) fn plan_opening(
         world_from_part,
         task,
         order,
-        later: Some(vec![]),
         branches: vec![],
         rejections,
         looked_at: 0,
@@ -213,8 +212,6 @@ struct Opening<'c, 'a, 't> {
     task: CagedObject<'t, RobotChecker<'t>>,
     /// Grips still to be looked at, the next one last.
     order: Vec<usize>,
-    /// Grips that are not within reach all the way, to be looked at after these, the next one last; `None` when the order does not matter.
-    later: Option<Vec<usize>>,
     /// Configurations of the present grip still to be tried, the next one last.
     branches: Vec<CagedState>,
     rejections: Rejections,
@@ -231,19 +228,16 @@ impl Opening<'_, '_, '_> {
     ) -> Result<(Vec<CagedState>, Motions), Box<GoalFailure>> {
         let exhaustive = self.cx.options.caging.search == WaySearch::Discrete;
         if exhaustive && self.cx.problem.arm.free_variables().is_empty() {
-            self.later = None;
             return self.search_all(budget, seed, observer);
         }
         let mut starts: Vec<Start> = Vec::new();
         // The failure that is told: of the latest stage that was reached.
         let mut last: Option<Box<GoalFailure>> = None;
-        // What works at all mostly goes straight on, one step each draw, in the grip that it begins with.
-        let most = self.cx.options.caging_search.max_draws;
-        let straight = most.min(self.task.steps() as u32 * 5 / 4);
-        let longer = ROUNDS.map(|share| (share * f64::from(most)).ceil() as u32).into_iter();
-        let rounds = std::iter::once(straight).chain(longer.filter(|draws| *draws > straight));
-        for (round, max_draws) in rounds.enumerate() {
-            let options = RandomizedOptions { max_draws, ..self.cx.options.caging_search };
+        for (round, share) in ROUNDS.into_iter().enumerate() {
+            let options = RandomizedOptions {
+                max_draws: (share * f64::from(self.cx.options.caging_search.max_draws)).ceil() as u32,
+                ..self.cx.options.caging_search
+            };
             for number in 0..STARTS {
                 if number == starts.len() {
                     match (round, self.next_start(budget)) {
@@ -336,7 +330,7 @@ impl Opening<'_, '_, '_> {
                 }
                 continue;
             }
-            let Some(grip) = self.next_grip() else { return Ok(None) };
+            let Some(grip) = self.order.pop() else { return Ok(None) };
             self.looked_at += 1;
             let grasp = as_grasp(self.cx, self.scene, self.cages[grip], &self.world_from_part);
             let world_from_tool = self.world_from_part * self.cages[grip].grasp.part_from_tool;
@@ -344,31 +338,13 @@ impl Opening<'_, '_, '_> {
                 self.rejections.add_because(filter, cause);
                 continue;
             }
-            let reached = self.task.candidates(0, grip, None).into_iter();
-            let mut free = reached
-                .map(|q| CagedState { step: 0, grasp: grip, q })
-                .filter(|state| self.task.free(state).is_ok())
-                .take(self.cx.options.branches)
-                .collect::<Vec<_>>();
-            if free.is_empty() {
+            let solutions = self.task.solutions(0, grip, None);
+            if solutions.is_empty() {
                 self.rejections.add(Filter::GraspOutOfReach);
             }
-            free.reverse();
-            self.branches = free;
+            let branches = solutions.into_iter().take(self.cx.options.branches);
+            self.branches = branches.rev().map(|q| CagedState { step: 0, grasp: grip, q }).collect();
         }
-    }
-
-    /// The next grip to look at: those first that are within reach half the way and at its end, with some values of the free joints.
-    fn next_grip(&mut self) -> Option<usize> {
-        while let Some(grip) = self.order.pop() {
-            let Some(later) = &mut self.later else { return Some(grip) };
-            let end = self.task.steps() - 1;
-            if [end, end / 2].into_iter().all(|step| self.task.is_within_reach(step, grip)) {
-                return Some(grip);
-            }
-            later.insert(0, grip);
-        }
-        self.later.as_mut()?.pop()
     }
 
     /// Against the approach of a grip with the arm at `at`, in the world.
