@@ -110,6 +110,8 @@ impl<A: EdgeChecker + ?Sized, B: EdgeChecker + ?Sized> EdgeChecker for Beside<'_
             Patience::Thorough => true,
             Patience::Hasty => used.is_ok(),
             Patience::Hopeful => used.is_err(),
+            // Neither answer is certain.
+            Patience::Wary => false,
         };
         if claims {
             let other = self.other.edge(from, to);

@@ -33,6 +33,8 @@ pub enum Patience {
     /// A motion that looks free at a few states may count as free: what is blocked is certainly blocked, the rest has to be
     /// asked about again.
     Hopeful,
+    /// As hopeful, but a motion that passes narrowly may count as blocked too: what looks free is then seldom blocked after all.
+    Wary,
 }
 
 /// Validity of states and of the straight motions between them: all that a planner knows about a robot and its world.
@@ -84,13 +86,14 @@ pub trait EdgeChecker {
 /// States of a straight motion, in one buffer.
 pub(crate) struct Motion<'a> {
     from: &'a [f64],
+    to: &'a [f64],
     difference: Vec<f64>,
     q: Vec<f64>,
 }
 
 impl<'a> Motion<'a> {
-    pub(crate) fn new(space: &Space, from: &'a [f64], to: &[f64]) -> Self {
-        Self { from, difference: space.difference(from, to), q: from.to_vec() }
+    pub(crate) fn new(space: &Space, from: &'a [f64], to: &'a [f64]) -> Self {
+        Self { from, to, difference: space.difference(from, to), q: from.to_vec() }
     }
 
     /// The whole motion.
@@ -104,8 +107,13 @@ impl<'a> Motion<'a> {
         checker: &mut C,
         fraction: f64,
     ) -> Result<f64, Blocked> {
-        for (x, (a, d)) in self.q.iter_mut().zip(self.from.iter().zip(&self.difference)) {
-            *x = a + fraction * d;
+        if fraction == 1.0 {
+            // Start and difference together may be a rounding away from it, and so beyond a limit.
+            self.q.copy_from_slice(self.to);
+        } else {
+            for (x, (a, d)) in self.q.iter_mut().zip(self.from.iter().zip(&self.difference)) {
+                *x = a + fraction * d;
+            }
         }
         checker.state(&self.q).map_err(|by| Blocked { fraction, by })
     }
@@ -207,6 +215,16 @@ mod tests {
             assert!(seen.windows(2).all(|w| w[1] - w[0] <= 0.1 + 1e-12));
             assert_eq!(seen.last(), Some(&9.0), "the end itself is checked");
             assert!((80..=129).contains(&seen.len()), "{}", seen.len());
+        }
+    }
+
+    #[test]
+    fn the_end_of_a_motion_is_looked_at_as_it_is() {
+        let ends = [0.3, 1.1];
+        for (i, end) in (0..500).flat_map(|i| ends.map(|end| (i, end))) {
+            let mut toy = Toy::wall(0.5);
+            bisect_edge(&mut toy, &[0.019 * f64::from(i), 9.5], &[end, 9.5]).unwrap();
+            assert!(toy.seen.iter().any(|q| q[0] == end), "{i} {end}");
         }
     }
 

@@ -96,6 +96,11 @@ impl Apart {
         table
     }
 
+    /// Whether cells are so small that what is open is all but touching.
+    pub(super) fn is_fine(&self) -> bool {
+        self.axes.len() < CELLS.len()
+    }
+
     /// Whether the two stay apart all along the motion by `difference` from `from`. "Yes" is certain.
     pub(super) fn holds(&self, from: &[f64], difference: &[f64]) -> bool {
         self.holds_within(from, difference, 0.0, 1.0)

@@ -8,7 +8,7 @@ use robotc_core::{BodyIdx, Pose};
 use super::Width;
 use super::glance::{Hit, Look, Meeting, View};
 use super::kernel::{Around, Close, Line, MOST_LANES, Motion, Scratch, look};
-use super::mechanism::{Body, Group, LaneRobot, number_of};
+use super::mechanism::{Body, Group, LaneRobot, Trust, number_of};
 use super::obstacle::Obstacle;
 use super::suspects::{Inquiry, Suspect, Suspects};
 use crate::edge::{Blocked, EdgeChecker, Obstruction, Patience};
@@ -193,13 +193,13 @@ impl<'a> LaneChecker<'a> {
     }
 
     /// Whether the motion looks free at `count` states.
-    fn look(&mut self, from: &[f64], count: usize) -> Result<(), Blocked> {
+    fn look(&mut self, from: &[f64], count: usize, trust: Trust) -> Result<(), Blocked> {
         self.statistics.edges += 1;
         self.statistics.looks += count as u64;
         self.work.set_steps(self.robot, from);
         let LaneMemory { motion, scratch, difference, .. } = &mut *self.work;
         let (robot, obstacles, meetings) = (self.robot, &self.obstacles, &self.meetings);
-        let view = View { robot, obstacles, meetings, motion, from, difference };
+        let view = View { robot, obstacles, meetings, motion, trust, from, difference };
         let inquiry = Inquiry { view, suspects: &self.suspects, count, frames: &mut scratch.frames };
         let hit = self.width.narrow().dispatch(inquiry).map(Hit::Obstacle);
         let close = match hit.or_else(|| self.width.dispatch(Look { view, count, scratch })) {
@@ -418,9 +418,14 @@ impl EdgeChecker for LaneChecker<'_> {
         self.space.difference_into(from, to, &mut difference);
         self.work.difference = difference;
         let length = self.space.distance(from, to);
-        if self.patience == Patience::Hopeful {
+        let trust = match self.patience {
+            Patience::Thorough | Patience::Hasty => None,
+            Patience::Hopeful => Some(Trust::Certain),
+            Patience::Wary => Some(Trust::Wary),
+        };
+        if let Some(trust) = trust {
             let blocks = (length / (LOOK * MOST_LANES as f64)).ceil().max(1.0);
-            return self.look(from, blocks as usize * MOST_LANES);
+            return self.look(from, blocks as usize * MOST_LANES, trust);
         }
         let blocks = (length / (LONGEST * STRETCHES as f64)).ceil().max(1.0);
         self.check(from, blocks as usize * STRETCHES)

@@ -3,6 +3,8 @@
 //! What is hit is certainly blocked. What is not may still be: between the looks, or where spheres around the robot touch
 //! something and spheres inside of it do not. Most motions that are blocked are so at a first look, at a tenth of the cost
 //! of a proof.
+//!
+//! A wary look takes the robot for somewhat larger than these spheres are. It is not certain of anything, but most of what it finds free is.
 
 use pulp::{Simd, WithSimd};
 
@@ -10,7 +12,7 @@ use super::apart::Apart;
 use super::frames::Frames;
 use super::kernel::{MOST_LANES, Motion, Scratch, children};
 use super::lane::{Lanes, Mask, dot, minus};
-use super::mechanism::LaneRobot;
+use super::mechanism::{LaneRobot, Trust};
 use super::obstacle::Obstacle;
 use super::suspects::Suspect;
 
@@ -40,6 +42,7 @@ pub(super) struct View<'a> {
     /// are looked at.
     pub(super) meetings: &'a [Meeting],
     pub(super) motion: &'a Motion,
+    pub(super) trust: Trust,
     /// Start of the motion, and its difference to the end.
     pub(super) from: &'a [f64],
     pub(super) difference: &'a [f64],
@@ -124,7 +127,7 @@ impl<S: Simd> Eye<'_, S> {
 
     #[inline(always)]
     fn against_obstacles(&mut self) -> Option<Suspect> {
-        let View { robot, obstacles, meetings, .. } = *self.view;
+        let View { robot, obstacles, meetings, trust, .. } = *self.view;
         for &Meeting { group, obstacle, room } in meetings {
             let group = &robot.groups[group as usize];
             let solid = &obstacles[obstacle as usize];
@@ -136,7 +139,8 @@ impl<S: Simd> Eye<'_, S> {
                 let mut at = body.spheres.start;
                 while at < body.spheres.end {
                     let sphere = &robot.spheres[at];
-                    if sphere.core <= self.rounding {
+                    let inside = sphere.inside(trust);
+                    if inside.core <= self.rounding {
                         at = sphere.next as usize;
                         continue;
                     }
@@ -145,7 +149,7 @@ impl<S: Simd> Eye<'_, S> {
                         at = sphere.next as usize;
                         continue;
                     }
-                    if sphere.inner > self.rounding && sphere.touches(most, room, self.rounding) {
+                    if inside.radius > self.rounding && inside.touches(most, room, self.rounding) {
                         return Some(Suspect { body: i as u32, sphere: at as u32, obstacle, room });
                     }
                     at += 1;
@@ -158,14 +162,15 @@ impl<S: Simd> Eye<'_, S> {
     /// Whether a sphere inside of the robot, this one or one below it, may touch; and the square of how far this one is away at most.
     #[inline(always)]
     fn compare(&mut self, sphere: usize, frame: usize, solid: &Obstacle, room: f32) -> (bool, Lanes<S>) {
-        let question = self.view.robot.question(self.simd, sphere, room);
+        let View { robot, trust, .. } = *self.view;
+        let question = robot.question(self.simd, sphere, room, trust);
         let (least, most) = solid.squared_distance(self.simd, &self.frames.centre(sphere, frame), question);
         (least.less_equal(question.limit * question.limit).any(), most)
     }
 
     #[inline(always)]
     fn against_itself(&mut self) -> Option<u32> {
-        let View { robot, from, difference, .. } = *self.view;
+        let View { robot, from, difference, trust, .. } = *self.view;
         let (mut groups, mut apart) = ((usize::MAX, usize::MAX), false);
         for (i, pair) in robot.pairs.iter().enumerate() {
             let (a, b) = (&robot.bodies[pair.a], &robot.bodies[pair.b]);
@@ -178,7 +183,8 @@ impl<S: Simd> Eye<'_, S> {
                         &self.frames.centre(one.ball, one.frame),
                         &self.frames.centre(other.ball, other.frame),
                     );
-                    let reach = robot.spheres[one.ball].core + robot.spheres[other.ball].core;
+                    let reach = robot.spheres[one.ball].inside(trust).core
+                        + robot.spheres[other.ball].inside(trust).core;
                     !dot(&between, &between).less_equal(self.splat(reach * reach)).any()
                 };
             }
@@ -191,7 +197,8 @@ impl<S: Simd> Eye<'_, S> {
             self.stack.push((a.spheres.start as u32, b.spheres.start as u32));
             while let Some((at_a, at_b)) = self.stack.pop() {
                 let (of_a, of_b) = (&robot.spheres[at_a as usize], &robot.spheres[at_b as usize]);
-                if of_a.core.min(of_b.core) <= self.rounding {
+                let (in_a, in_b) = (of_a.inside(trust), of_b.inside(trust));
+                if in_a.core.min(in_b.core) <= self.rounding {
                     continue;
                 }
                 let between = minus(
@@ -199,7 +206,7 @@ impl<S: Simd> Eye<'_, S> {
                     &self.frames.centre(at_b as usize, b.frame),
                 );
                 let squared = dot(&between, &between);
-                let core = of_a.core + of_b.core;
+                let core = in_a.core + in_b.core;
                 let near = squared.less_equal(self.splat(core * core));
                 if !near.any() {
                     continue;
@@ -216,10 +223,13 @@ impl<S: Simd> Eye<'_, S> {
                     if !near.and(*doubtful.get_or_insert_with(|| self.doubtful(table))).any() {
                         continue;
                     }
+                    if trust == Trust::Wary && table.is_fine() {
+                        return Some(i as u32);
+                    }
                 }
-                let inner = of_a.inner + of_b.inner - 2.0 * self.rounding;
-                if of_a.inner > self.rounding
-                    && of_b.inner > self.rounding
+                let inner = in_a.radius + in_b.radius - 2.0 * self.rounding;
+                if in_a.radius > self.rounding
+                    && in_b.radius > self.rounding
                     && squared.less_equal(self.splat(inner * inner)).any()
                 {
                     return Some(i as u32);

@@ -100,21 +100,50 @@ pub(super) struct Sphere {
     pub(super) centre: [f32; 3],
     pub(super) outer: f32,
     pub(super) inner: f32,
-    /// Inner spheres of this one and of those below it are within this distance; below zero when there are none.
-    pub(super) core: f32,
+    /// For each [`Trust`], what looks go by.
+    insides: [Inside; 2],
     /// Position of the first sphere that is not below this one.
     pub(super) next: u32,
 }
 
+/// What a look takes for the inside of the robot.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Inside {
+    /// Of a sphere about the same middle; not above zero when there is none.
+    pub(super) radius: f32,
+    /// Such spheres of this node and of those below it are within this distance; below zero when there are none.
+    pub(super) core: f32,
+}
+
 impl Sphere {
-    /// Whether in some lane the inner sphere has less `room` than this between it and an obstacle, the square of whose distance from the
+    /// What looks go by.
+    #[inline(always)]
+    pub(super) fn inside(&self, trust: Trust) -> Inside {
+        self.insides[trust as usize]
+    }
+}
+
+impl Inside {
+    /// Whether in some lane the sphere has less `room` than this between it and an obstacle, the square of whose distance from the
     /// middle is `most`, at most.
     #[inline(always)]
     pub(super) fn touches<S: Simd>(&self, most: Lanes<S>, room: f32, rounding: f32) -> bool {
-        let inner = self.inner + room - rounding;
+        let inner = self.radius + room - rounding;
         most.less_equal_number(inner * inner).any()
     }
 }
+
+/// What looks take for the inside of the robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Trust {
+    /// What certainly is.
+    Certain,
+    /// What most likely is, so that little that looks free is not.
+    Wary,
+}
+
+/// How far from the largest sphere inside of the robot to the one that covers its part of it a wary look goes, as a fraction.
+const LIKELY: f64 = 0.25;
 
 impl LaneRobot {
     /// Motions of `dofs` from configuration `q` on.
@@ -221,8 +250,9 @@ impl LaneRobot {
 
     /// What a look asks of an obstacle: whether spheres inside of the robot, this one or one below it, may come so near.
     #[inline(always)]
-    pub(super) fn question<S: Simd>(&self, simd: S, sphere: usize, room: f32) -> Question<S> {
-        let Sphere { outer, core, next, .. } = self.spheres[sphere];
+    pub(super) fn question<S: Simd>(&self, simd: S, sphere: usize, room: f32, trust: Trust) -> Question<S> {
+        let Sphere { outer, next, .. } = self.spheres[sphere];
+        let core = self.spheres[sphere].inside(trust).core;
         let leaf = next as usize == sphere + 1;
         let limit = Lanes::splat(simd, core + room + self.rounding as f32);
         Question { limit, coarse: if leaf { 0.0 } else { COARSE * outer } }
@@ -245,14 +275,18 @@ impl LaneRobot {
         // Spheres around groups come last, and are found again.
         self.ungroup();
         let first = self.spheres.len();
-        let core = cores(cover.nodes());
-        for (node, core) in cover.nodes().iter().zip(core) {
+        let certain = insides(cover.nodes(), |_, node| node.inner);
+        let wary = insides(cover.nodes(), |leaf, node| match leaf {
+            true => node.inner + LIKELY * (node.outer - node.inner),
+            false => node.inner,
+        });
+        for (node, insides) in cover.nodes().iter().zip(certain.into_iter().zip(wary)) {
             let centre = frame_from_body * node.centre;
             self.spheres.push(Sphere {
                 centre: [centre.x as f32, centre.y as f32, centre.z as f32],
                 outer: node.outer as f32,
                 inner: node.inner as f32,
-                core,
+                insides: [insides.0, insides.1],
                 next: first as u32 + node.next,
             });
         }
@@ -496,18 +530,21 @@ fn around(spheres: &[Sphere]) -> Option<Sphere> {
     let outer = spheres.iter().map(reach).reduce(f64::max)?;
     // A hair more, for rounding.
     let outer = (outer * (1.0 + 1e-6)) as f32;
-    Some(Sphere { centre, outer, inner: 0.0, core: outer, next: 0 })
+    Some(Sphere { centre, outer, inner: 0.0, insides: [Inside { radius: 0.0, core: outer }; 2], next: 0 })
 }
 
-/// For each node, how far from its centre inner spheres of it and of those below it reach; -1 where there are none.
-fn cores(nodes: &[SphereNode]) -> Vec<f32> {
-    let core = |(i, node): (usize, &SphereNode)| {
-        let inside = nodes[i..node.next as usize].iter().filter(|below| below.inner > 0.0);
-        let reach = inside.map(|below| (below.centre - node.centre).norm() + below.inner);
+/// For each node, what a look goes by: `radius` tells that of the sphere inside of a node, which may be a leaf.
+fn insides(nodes: &[SphereNode], radius: impl Fn(bool, &SphereNode) -> f64) -> Vec<Inside> {
+    let is_leaf = |i: usize| nodes[i].next as usize == i + 1;
+    let inside = |(i, node): (usize, &SphereNode)| {
+        let below = (i..node.next as usize)
+            .map(|j| ((nodes[j].centre - node.centre).norm(), radius(is_leaf(j), &nodes[j])));
+        let reach = below.filter(|(_, radius)| *radius > 0.0).map(|(away, radius)| away + radius);
         // A hair more, for rounding.
-        reach.reduce(f64::max).map_or(-1.0, |reach| (reach * (1.0 + 1e-6)) as f32)
+        let core = reach.reduce(f64::max).map_or(-1.0, |reach| (reach * (1.0 + 1e-6)) as f32);
+        Inside { radius: radius(is_leaf(i), node) as f32, core }
     };
-    nodes.iter().enumerate().map(core).collect()
+    nodes.iter().enumerate().map(inside).collect()
 }
 
 /// A coefficient that is zero but for rounding becomes zero, which the kernel skips.

@@ -9,7 +9,7 @@ use super::checker::{LaneChecker, LaneMemory};
 use super::frames::Frames;
 use super::kernel::{COARSE, Close, MOST_LANES, Scratch, children};
 use super::lane::{Lanes, Mask, dot, minus};
-use super::mechanism::LaneRobot;
+use super::mechanism::{LaneRobot, Trust};
 use super::obstacle::Obstacle;
 use super::pile::Question;
 use crate::edge::Obstruction;
@@ -330,12 +330,12 @@ impl<S: Simd> Eye<'_, S> {
         let mut at = body.spheres.start;
         while at < body.spheres.end {
             let sphere = &robot.spheres[at];
-            if self.care == Care::Glance && sphere.core <= self.rounding {
+            if self.care == Care::Glance && sphere.inside(Trust::Certain).core <= self.rounding {
                 at = sphere.next as usize;
                 continue;
             }
             let question = match self.care {
-                Care::Glance => robot.question(self.simd, at, room),
+                Care::Glance => robot.question(self.simd, at, room, Trust::Certain),
                 Care::Full | Care::Itself => {
                     let leaf = sphere.next as usize == at + 1;
                     let coarse = if leaf { 0.0 } else { COARSE * sphere.outer };

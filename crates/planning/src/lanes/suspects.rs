@@ -59,7 +59,7 @@ impl WithSimd for Inquiry<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Option<Suspect> {
         let Self { view, suspects, count, frames } = self;
-        let View { robot, obstacles, motion, .. } = view;
+        let View { robot, obstacles, motion, trust, .. } = view;
         let blocks = count / S::F32_LANES;
         let mut frames = Frames::place(simd, robot, &motion.steps, along(simd, count, blocks - 1), frames);
         for &suspect in &suspects.0 {
@@ -67,9 +67,9 @@ impl WithSimd for Inquiry<'_> {
             frames.reach(frame);
             let at = suspect.sphere as usize;
             let centre = frames.centre(at, frame);
-            let question = robot.question(simd, at, suspect.room);
+            let question = robot.question(simd, at, suspect.room, trust);
             let most = obstacles[suspect.obstacle as usize].squared_distance(simd, &centre, question).1;
-            if robot.spheres[at].touches(most, suspect.room, robot.rounding as f32) {
+            if robot.spheres[at].inside(trust).touches(most, suspect.room, robot.rounding as f32) {
                 return Some(suspect);
             }
         }

@@ -315,6 +315,38 @@ fn what_a_first_look_blocks_is_blocked_with_any_number_of_lanes() {
 }
 
 #[test]
+fn a_wary_look_blocks_more_with_any_number_of_lanes_and_misleads_less() {
+    let mut rng = Seed::new(31).rng();
+    let bench = bench(false, &covers(), &mut rng);
+    let mut memory = LaneMemory::default();
+    let mut thorough = bench.lanes(Width::widest(), &mut memory);
+    let mut memories: Vec<LaneMemory> = Width::all().iter().map(|_| LaneMemory::default()).collect();
+    let each = Width::all().into_iter().zip(&mut memories);
+    let mut checkers: Vec<_> = each.map(|(width, memory)| bench.lanes(width, memory)).collect();
+    let (mut passed, mut misled, mut misled_the_wary) = (0, 0, 0);
+    for _ in 0..300 {
+        let from = bench.space.sample(&mut rng);
+        let to = bench.space.sample_near(&from, rng.range(0.05, 2.0), &mut rng);
+        let mut looks = |patience: Patience| {
+            let look = |lanes: &mut LaneChecker<'_>| {
+                lanes.set_patience(patience);
+                lanes.edge(&from, &to).is_ok()
+            };
+            let looks: Vec<bool> = checkers.iter_mut().map(look).collect();
+            assert!(looks.iter().all(|look| *look == looks[0]), "{patience:?} {from:?} {to:?}");
+            looks[0]
+        };
+        let (hopeful, wary) = (looks(Patience::Hopeful), looks(Patience::Wary));
+        assert!(hopeful || !wary, "{from:?} {to:?}");
+        let free = thorough.edge(&from, &to).is_ok();
+        passed += usize::from(wary && free);
+        misled += usize::from(hopeful && !free);
+        misled_the_wary += usize::from(wary && !free);
+    }
+    assert!(passed > 30 && misled_the_wary < misled, "{passed} {misled} {misled_the_wary}");
+}
+
+#[test]
 fn what_is_held_and_what_may_be_touched_is_as_exact_geometry_says() {
     let (covers, mut rng) = (covers(), Seed::new(25).rng());
     let parts = parts_of(&block(), &DecomposeOptions::default()).unwrap();

@@ -64,10 +64,15 @@ pub(super) fn run<C: EdgeChecker + ?Sized>(
     budget: &Budget<'_>,
     seed: Seed,
 ) -> Result<MotionPlan, MotionFailure> {
-    checker.set_patience(Patience::Thorough);
-    if checker.edge(start, goal).is_ok() {
+    let mut free = |patience: Patience, from: &[f64], to: &[f64]| {
+        checker.set_patience(patience);
+        checker.edge(from, to).is_ok()
+    };
+    if free(Patience::Hopeful, start, goal) && free(Patience::Thorough, start, goal) {
         return Ok(MotionPlan { path: vec![start.to_vec(), goal.to_vec()], iterations: 0 });
     }
+    // Where an end itself is in doubt, the wary would not get away from it.
+    let open = free(Patience::Wary, start, start) && free(Patience::Wary, goal, goal);
     let space = checker.space().clone();
     let mut search = Search {
         step: options.step * space.diameter(),
@@ -76,6 +81,7 @@ pub(super) fn run<C: EdgeChecker + ?Sized>(
         from_goal: Tree::new(checker.space()),
         sample: start.to_vec(),
         next: start.to_vec(),
+        glance: Patience::Hopeful,
         disappointments: 0,
         options,
     };
@@ -84,6 +90,8 @@ pub(super) fn run<C: EdgeChecker + ?Sized>(
         search.from_start.plant(checker.space(), start);
         search.from_goal.plant(checker.space(), goal);
         search.disappointments = 0;
+        // What only looks narrow to the wary is left to every other run.
+        search.glance = if open && run % 2 == 0 { Patience::Wary } else { Patience::Hopeful };
         let seed = seed.at(run);
         let mut sampler = options.sampling.sampler(&search.space, seed.split("sampler"));
         let mut rng = seed.rng();
@@ -122,6 +130,8 @@ struct Search<'a> {
     from_goal: Tree,
     sample: Vec<f64>,
     next: Vec<f64>,
+    /// How this run looks at motions that are not proven yet.
+    glance: Patience,
     /// Ways that looked free and were not, in this run.
     disappointments: u32,
 }
@@ -135,8 +145,8 @@ impl Search<'_> {
         rng: &mut Rng,
     ) -> Option<Vec<Vec<f64>>> {
         let hopeful = self.disappointments < self.options.hopes;
-        checker.set_patience(if hopeful { Patience::Hopeful } else { Patience::Thorough });
-        let Self { options, space, step, from_start, from_goal, sample, next, disappointments } = self;
+        checker.set_patience(if hopeful { self.glance } else { Patience::Thorough });
+        let Self { options, space, step, from_start, from_goal, sample, next, disappointments, .. } = self;
         let forward = from_start.len() <= from_goal.len();
         let (grown, other) = if forward { (from_start, from_goal) } else { (from_goal, from_start) };
         let mut free = |q: &[f64]| checker.edge(q, q).is_ok();
