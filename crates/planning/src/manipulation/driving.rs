@@ -69,7 +69,11 @@ impl Manipulation<'_> {
 
 /// Shares of the draws that searches for a way of a door or a drawer get at each place, stage by stage: what can be opened from a place
 /// is mostly opened soon, and another place is worth more than a long search from one that is no good.
-const STAGES: [f64; 3] = [0.002, 0.02, 0.1];
+/// At first there are none but those that go straight on, at the first few places alone.
+const STAGES: [f64; 4] = [0.0, 0.002, 0.02, 0.1];
+
+/// Places at which ways straight on come before all others.
+const FIRST_PLACES: u64 = 6;
 
 /// A place to stand, and how the base gets there.
 struct Place {
@@ -104,16 +108,18 @@ pub(super) fn plan_driving(
     let mut places = BasePlacement::new(&mut standing, &mut bases, &arms, PLACEMENT, seed.split("places"));
     let mut last = missed;
     // Only searches for a way of an article are long or short.
-    let stages = if matches!(cx.goal(), Goal::Open { .. }) { &STAGES[..] } else { &STAGES[..1] };
+    let stages = if matches!(cx.goal(), Goal::Open { .. }) { 0..STAGES.len() } else { 1..2 };
     let mut known: Vec<Place> = Vec::new();
     let mut tried = 0;
-    for (stage, share) in stages.iter().enumerate() {
+    for stage in stages {
+        let most = if stage == 0 { FIRST_PLACES } else { PLACES };
         let mut options = cx.options.clone();
-        options.caging_search.max_draws = (share * f64::from(options.caging_search.max_draws)).ceil() as u32;
+        options.caging_search.max_draws =
+            (STAGES[stage] * f64::from(options.caging_search.max_draws)).ceil() as u32;
         let mut number = 0;
         loop {
             if number == known.len() {
-                if stage > 0 || tried == PLACES {
+                if stage > 1 || tried == most {
                     break;
                 }
                 let base = match places.next_base(budget) {
@@ -140,7 +146,9 @@ pub(super) fn plan_driving(
             let arm = cx.problem.arm_at(stands);
             let here =
                 GoalContext { problem: Manipulation { arm: &arm, ..cx.problem }, options: &options, ..*cx };
-            match there(&here, stands, seed.split("stage").at(stage as u64)) {
+            // What is looked at first is looked at again in the same order.
+            let seed = seed.split("stage").at(stage.saturating_sub(1) as u64);
+            match there(&here, stands, seed) {
                 Ok(reached) => {
                     let mut made = Maker::new(cx, q);
                     if fold.len() > 1 {

@@ -1,8 +1,8 @@
 //! Doors, drawers and levers, moved in a loose grip on their handles (thesis section 3.4).
 //!
 //! Starts are drawn lazily: a grip, a branch of inverse kinematics, and a straight approach to it. From each a
-//! [randomised search](crate::caging::randomized_search) looks for a way of the article, a short time at first and longer in each
-//! round, since most of what can be opened at all is opened soon from some start.
+//! [randomised search](crate::caging::randomized_search) looks for a way of the article, straight on in one grip at first and longer in
+//! each round, since most of what can be opened at all is opened soon from some start.
 
 use nalgebra::Unit;
 use robotc_core::rng::Rng;
@@ -19,7 +19,8 @@ use super::stretch::{back_off, cause, fine_checker, fingers_move, state_is_free}
 use crate::budget::{Budget, Interrupt};
 use crate::caging::{
     ArticulatedTask, Cage, CageGrasp, CageStart, CagedObject, CagedState, CagingFailure, CagingFailureReason,
-    ObjectStep, RandomizedOptions, StartingAt, WaySearch, discrete_search, randomized_search,
+    CagingSolution, FixedGrasp, ObjectStep, RandomizedOptions, StartingAt, WaySearch, discrete_search,
+    randomized_search,
 };
 use crate::cartesian::LineObstacle;
 use crate::edge::Obstruction;
@@ -41,7 +42,7 @@ pub(super) struct ArticleWay {
 /// An article nearer to its goal than this, radians or metres, is there.
 const THERE: f64 = 1e-6;
 
-/// Shares of the draws of a search that each round gets.
+/// Shares of the draws of a search that each round gets, after a first one for ways straight on.
 const ROUNDS: [f64; 4] = [0.002, 0.01, 0.1, 1.0];
 
 /// Most starts that are searched from.
@@ -200,6 +201,15 @@ struct Start {
     opens_there: bool,
 }
 
+/// How long ways are searched for before those from all other starts are.
+struct Round {
+    /// Only ways on which the grip stays what it is. They take a quarter of the draws of others and open most of what can be opened.
+    straight: bool,
+    draws: u32,
+    /// Of random numbers.
+    stream: u64,
+}
+
 /// A search for a way of an article.
 struct Opening<'c, 'a, 't> {
     cx: &'c GoalContext<'a>,
@@ -231,26 +241,20 @@ impl Opening<'_, '_, '_> {
             return self.search_all(budget, seed, observer);
         }
         let mut starts: Vec<Start> = Vec::new();
-        // The failure that is told: of the latest stage that was reached.
-        let mut last: Option<Box<GoalFailure>> = None;
-        for (round, share) in ROUNDS.into_iter().enumerate() {
-            let options = RandomizedOptions {
-                max_draws: (share * f64::from(self.cx.options.caging_search.max_draws)).ceil() as u32,
-                ..self.cx.options.caging_search
-            };
-            for number in 0..STARTS {
-                if number == starts.len() {
-                    match (round, self.next_start(budget)) {
+        // The failure that is told: of the latest stage that was reached; of going straight on only when there is no other.
+        let (mut last, mut first): (Option<Box<GoalFailure>>, Option<Box<GoalFailure>>) = (None, None);
+        for (number, round) in self.rounds().into_iter().enumerate() {
+            for start in 0..STARTS {
+                if start == starts.len() {
+                    match (number, self.next_start(budget)) {
                         (_, Err(interrupt)) => return Err(self.interrupted(interrupt)),
                         (0, Ok(Some(start))) => starts.push(start),
                         _ => break,
                     }
                 }
-                let start = starts[number].clone();
-                let seed = seed.split("starts").at(number as u64).at(round as u64);
-                let from = CageStart::State(start.state.clone());
-                let mut rng = seed.split("caging").rng();
-                let found = randomized_search(&mut self.task, &from, &options, budget, &mut rng);
+                let seed = seed.split("starts").at(start as u64).at(round.stream);
+                let start = starts[start].clone();
+                let Some(found) = self.search_from(&start, &round, budget, seed) else { continue };
                 let states = match found {
                     Ok(solution) => solution.states,
                     Err(failure) => {
@@ -258,7 +262,8 @@ impl Opening<'_, '_, '_> {
                         if missed.interrupt.is_some() {
                             return Err(missed);
                         }
-                        last = last.or(Some(missed));
+                        let told = if round.straight { &mut first } else { &mut last };
+                        told.get_or_insert(missed);
                         continue;
                     }
                 };
@@ -270,12 +275,49 @@ impl Opening<'_, '_, '_> {
                 }
             }
         }
-        let missed = last.unwrap_or_else(|| {
+        let missed = last.or(first).unwrap_or_else(|| {
             let mut missed = GoalFailure::new(self.cx.object_name(), Stage::Grasps);
             missed.message = none_usable(self.cages.len());
             missed
         });
         Err(self.counted(missed))
+    }
+
+    /// Straight on at first, one draw each step, then longer and longer; fewer draws than there are steps lead nowhere.
+    fn rounds(&self) -> Vec<Round> {
+        let most = f64::from(self.cx.options.caging_search.max_draws);
+        let needed = self.task.steps() as u32 - 1;
+        let straight = Round { straight: true, draws: needed, stream: ROUNDS.len() as u64 };
+        let longer = (0..).zip(ROUNDS);
+        let longer = longer.map(|(stream, share)| Round {
+            straight: false,
+            draws: (share * most).ceil() as u32,
+            stream,
+        });
+        std::iter::once(straight).chain(longer.filter(|round| round.draws >= needed)).collect()
+    }
+
+    /// Searches for a way from one start; `None` where the round has nothing to look for from there.
+    fn search_from(
+        &mut self,
+        start: &Start,
+        round: &Round,
+        budget: &Budget<'_>,
+        seed: Seed,
+    ) -> Option<Result<CagingSolution, CagingFailure>> {
+        let usual = self.cx.options.caging_search;
+        let options = RandomizedOptions { max_draws: round.draws, ..usual };
+        let from = CageStart::State(start.state.clone());
+        let mut rng = seed.split("caging").rng();
+        if !round.straight {
+            return Some(randomized_search(&mut self.task, &from, &options, budget, &mut rng));
+        }
+        if !self.task.is_contact(start.state.grasp) {
+            return None;
+        }
+        let options = RandomizedOptions { children: 1, ..options };
+        let mut firm = FixedGrasp::one(&mut self.task, start.state.grasp);
+        Some(randomized_search(&mut firm, &from, &options, budget, &mut rng))
     }
 
     /// The exhaustive search from all grips that can be approached (thesis algorithm 3.7).
@@ -338,12 +380,14 @@ impl Opening<'_, '_, '_> {
                 self.rejections.add_because(filter, cause);
                 continue;
             }
-            let solutions = self.task.solutions(0, grip, None);
-            if solutions.is_empty() {
+            let within_reach = self.task.candidates(0, grip, None).into_iter();
+            let states = within_reach.map(|q| CagedState { step: 0, grasp: grip, q });
+            let free = states.filter(|state| self.task.free(state).is_ok());
+            self.branches = free.take(self.cx.options.branches).collect();
+            self.branches.reverse();
+            if self.branches.is_empty() {
                 self.rejections.add(Filter::GraspOutOfReach);
             }
-            let branches = solutions.into_iter().take(self.cx.options.branches);
-            self.branches = branches.rev().map(|q| CagedState { step: 0, grasp: grip, q }).collect();
         }
     }
 
