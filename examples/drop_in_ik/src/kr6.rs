@@ -406,7 +406,7 @@ pub fn cos_sin(angle: f64) -> [f64; 2] {
 	}
 }
 
-/// Angle with this sine and cosine in (-pi, pi], within two places; faster than [`atan2`] as the point is on the unit circle.
+/// Angle with this sine and cosine in (-pi, pi], within two places.
 pub fn angle_of(sine: f64, cosine: f64) -> f64 {
 	use core::f64::consts::{FRAC_PI_2, PI};
 	/// Cosine and angle.
@@ -471,8 +471,7 @@ pub fn product_rest(a: f64, b: f64) -> f64 {
 
 mod roots {
 
-//! Root finders of the solution language. Angles are unknown through their cosine and sine; no root takes an
-//! inverse trigonometric function.
+//! Root finders of the solution language.
 
 use super::math::{cos_sin, sqrt};
 
@@ -579,8 +578,7 @@ pub fn half(x: f64, y: f64, slack: f64) -> Roots<1> {
 	roots
 }
 
-/// The sine at which two roots that nearly fall together are started. The ideal chain says where they meet only up to
-/// `slack`; from the meeting point itself a polish could find neither.
+/// The sine at which two roots that nearly fall together are started.
 fn apart(sine: f64, slack: f64) -> f64 {
 	let least = sqrt(2.0 * slack);
 	if sine < least { if least < 0.2 { least } else { 0.2 } } else { sine }
@@ -630,8 +628,7 @@ pub const EXACT: f64 = 1e-13;
 /// Newton steps within which a polish must halve the distance that is left.
 const PATIENCE: usize = 20;
 
-/// The same for candidates that start this near: they lack digits alone. Where one root after the other of an unknown that is nearly
-/// free is tried, most of them miss by about this, and lead nowhere.
+/// The same for candidates that start this near: they lack digits alone.
 const NEAR: (f64, usize) = (1e-7, 4);
 
 /// A rigid transform: rotation rows, then position.
@@ -881,8 +878,7 @@ pub const SAME: f64 = 1e-7;
 /// alone can hide the roots of an equation.
 pub const WIDER: [f64; 2] = [1e-5, 2e-3];
 
-/// Wrong candidates of one attempt after which the rest is not looked at. Only attempts with wide slack at poses that cannot
-/// be reached come near it; without it they could take milliseconds.
+/// Wrong candidates of one attempt after which the rest is not looked at.
 pub const MOST_MISSES: usize = 256;
 
 /// The chain that solutions must satisfy.

@@ -13,7 +13,7 @@ use crate::run::TrueChain;
 const KERNEL: [&str; 2] = [include_str!("kernel.c"), include_str!("kernel_general.c")];
 
 /// What each section calls, itself in the order of the file.
-const SECTIONS: [(&str, &[&str]); 36] = [
+const SECTIONS: [(&str, &[&str]); 35] = [
     ("sqrt", &[]),
     ("abs", &[]),
     ("finite", &[]),
@@ -34,8 +34,7 @@ const SECTIONS: [(&str, &[&str]); 36] = [
     ("quadratic", &["roots", "sqrt", "abs"]),
     ("conic", &["circle"]),
     ("eigen", &["sqrt", "abs"]),
-    ("atan2", &["abs", "finite"]),
-    ("waves", &["eigen", "atan2", "cos_sin"]),
+    ("waves", &["eigen", "angle_of", "cos_sin", "finite"]),
     ("bends", &["waves"]),
     ("octic", &["bends", "roots"]),
     ("vector", &["sqrt", "finite", "cos_sin"]),

@@ -122,74 +122,6 @@ static int ik_eigenvalues(double h[][IK_SIZE], int n, double found[][2])
     return count;
 }
 
-/* == atan2 == */
-/* The number without the lower half of its digits. */
-static double ik_upper_half(double x)
-{
-    union { double number; uint64_t bits; } top;
-    top.number = x;
-    top.bits &= UINT64_C(0xfffffffff8000000);
-    return top.number;
-}
-
-/* What the product has rounded away. */
-static double ik_product_rest(double a, double b)
-{
-    double a_top = ik_upper_half(a), b_top = ik_upper_half(b), a_low = a - a_top, b_low = b - b_top;
-    return ((a_top * b_top - a * b) + a_top * b_low + a_low * b_top) + a_low * b_low;
-}
-
-/* Angle of the vector (x, y) in (-pi, pi] within one unit in the last place, for vectors of ordinary length. Folded to the first octant,
-   turned back by the nearest of nine angles atan(k/8); table and ratio carry what their last place has rounded away. */
-static double ik_atan2(double y, double x)
-{
-    static const double eighths[9][2] = {
-        { 0.0, 0.0 },
-        { 0.12435499454676144, -3.125324142453938e-18 },
-        { 0.24497866312686414, 1.069875561873445e-17 },
-        { 0.35877067027057225, -2.4623815582638635e-17 },
-        { 0.4636476090008061, 2.2698777452961687e-17 },
-        { 0.5585993153435624, -5.455630548591626e-18 },
-        { 0.6435011087932844, 1.5834785051444286e-17 },
-        { 0.7188299996216245, -2.1478388444456983e-17 },
-        { 0.7853981633974483, 3.061616997868383e-17 }
-    };
-    static const double octants[4][3] = {
-        { 0.0, 0.0, 1.0 },
-        { 1.5707963267948966, 6.123233995736766e-17, -1.0 },
-        { 3.141592653589793, 1.2246467991473532e-16, -1.0 },
-        { 1.5707963267948966, 6.123233995736766e-17, 1.0 }
-    };
-    static const double odd[7] = { -15.0, 13.0, -11.0, 9.0, -7.0, 5.0, -3.0 };
-    double ax = ik_abs(x), ay = ik_abs(y), large = ax > ay ? ax : ay, small = ax > ay ? ay : ax;
-    double ratio, tangent, top, over, under, inverse, t, t_low, z, p, coarse, fine, rest, angle;
-    const double *octant, *table;
-    int k, i;
-    if (!(large > 1e-280 && large < 1e280)) {
-        if (!(large > 0.0) || !ik_finite(large)) return 0.0;
-        return large < 1.0 ? ik_atan2(y * 1e200, x * 1e200) : ik_atan2(y * 1e-200, x * 1e-200);
-    }
-    ratio = small / large;
-    k = ratio >= 0.125 ? (int)(ratio * 8.0 + 0.5) : 0;
-    tangent = k * 0.125;
-    top = ik_upper_half(large);
-    over = (small - tangent * top) - tangent * (large - top);
-    under = large + tangent * small;
-    inverse = 1.0 / under;
-    t = over * inverse;
-    t_low = (over - t * under - ik_product_rest(t, under)) * inverse;
-    z = t * t;
-    p = 1.0 / 17.0;
-    for (i = 0; i < 7; i++) p = 1.0 / odd[i] + z * p;
-    octant = octants[(ay > ax) + 2 * (x < 0.0)];
-    table = eighths[k];
-    coarse = octant[0] + octant[2] * table[0];
-    fine = coarse + octant[2] * t;
-    rest = (octant[2] * table[0] - (coarse - octant[0])) + (octant[2] * t - (fine - coarse));
-    angle = fine + (rest + (octant[1] + octant[2] * (table[1] + (t_low + t * z * p))));
-    return y < 0.0 ? -angle : angle;
-}
-
 /* == waves == */
 /* Highest multiple of the angle, and the number of samples that determine such a polynomial. */
 #define IK_DEGREE (IK_SIZE / 2)
@@ -280,8 +212,9 @@ static int ik_roots_of_waves(const ik_waves *waves, int squared, ik_root *found)
     for (k = 1; k < size; k++) companion[k][k - 1] += weight[k - 1] / weight[k];
     count = ik_eigenvalues(companion, size, values);
     for (k = 0; k < count; k++) {
-        double x = values[k][0], y = values[k][1];
-        found[k].angle = waves->start + ik_atan2(2.0 * x, 1.0 - x * x - y * y);
+        double x = values[k][0], y = values[k][1], a = 1.0 - y, b = 1.0 + y;
+        double m = ik_sqrt(x * x + a * a), n = ik_sqrt(x * x + b * b);
+        found[k].angle = waves->start + (ik_angle_of(x / m, a / m) + ik_angle_of(x / n, b / n));
         found[k].imaginary = 2.0 * y / (1.0 + x * x);
     }
     return count;

@@ -3,7 +3,7 @@
 //! The kernel's files are formatted, so their items can be told by their lines: an item starts at the margin after an empty line, a
 //! method of an `impl` block one step in. An item is kept when its name is a word of a kept item of its module, or of one that imports it.
 //!
-//! Of its comments a generated file carries the first paragraphs: what is called, not how it was found.
+//! Of its comments about items a generated file carries the first sentences: what is called, not how it was found.
 
 /// The text of modules, each reduced to the items that `code` needs, in the order given; `uses` are the imports of `code`.
 pub(super) fn needed(modules: &[(&str, &str)], uses: &str, code: &str) -> Vec<(String, String)> {
@@ -192,16 +192,19 @@ fn import(line: &str, code: &str) -> Option<String> {
     }
 }
 
-/// A text with the first paragraph of each of its comments.
+/// A text with the first sentence of each of its comments about items.
 fn brief(text: &str) -> String {
     let (mut out, mut rest) = (String::new(), false);
     for line in text.lines() {
         let comment = line.trim_start();
-        rest = (comment.starts_with("///") || comment.starts_with("//!")) && (rest || comment.len() == 3);
+        let about = comment.starts_with("///") || comment.starts_with("//!");
+        let sentence = if about { line.find(". ").map_or(line, |end| &line[..=end]) } else { line };
+        rest &= about;
         if !rest {
-            out += line;
+            out += sentence;
             out.push('\n');
         }
+        rest = about && (rest || comment.len() == 3 || sentence.ends_with('.'));
     }
     out
 }

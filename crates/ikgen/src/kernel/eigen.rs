@@ -107,56 +107,45 @@ fn double_step(h: &mut Square, start: usize, size: usize, sweep: i32) {
         (x, y) = (h[k + 1][k], h[k + 2][k]);
         z = if k + 3 < size { h[k + 3][k] } else { 0.0 };
     }
-    reflect_last(h, size - 2, [x, y], size - 3..size, start..size);
+    reflect(h, size - 2, [x, y], size - 3..size, start..size);
     h[size - 1][size - 3] = 0.0;
 }
 
-/// Reflects rows and columns `k`, `k + 1` and `k + 2` so that `vector` comes to lie along the first of them.
-fn reflect(h: &mut Square, k: usize, vector: [f64; 3], columns: Range<usize>, rows: Range<usize>) {
-    let [x, y, z] = vector;
-    let norm = sqrt(x * x + y * y + z * z);
+/// Reflects rows and columns from `k` on, as many as the vector has entries, so that it comes to lie along the first of them.
+fn reflect<const N: usize>(
+    h: &mut Square,
+    k: usize,
+    vector: [f64; N],
+    columns: Range<usize>,
+    rows: Range<usize>,
+) {
+    let norm = sqrt(vector.iter().map(|x| x * x).sum());
     if !(norm > 0.0) {
         return;
     }
-    let norm = if x < 0.0 { -norm } else { norm };
-    let (v, w, beta) = (y / (x + norm), z / (x + norm), (x + norm) / norm);
-    let (beta_v, beta_w) = (beta * v, beta * w);
-    let [a, b, c] = &mut h[k..k + 3] else { return };
-    for ((a, b), c) in a[columns.clone()].iter_mut().zip(&mut b[columns.clone()]).zip(&mut c[columns]) {
-        let sum = *a + v * *b + w * *c;
-        *a -= beta * sum;
-        *b -= beta_v * sum;
-        *c -= beta_w * sum;
+    let norm = if vector[0] < 0.0 { -norm } else { norm };
+    let (beta, mirror) = ((vector[0] + norm) / norm, vector.map(|x| x / (vector[0] + norm)));
+    let Some(top) = h[k..].first_chunk_mut::<N>() else { return };
+    for i in columns.start..columns.end.min(MAX_SIZE) {
+        let mut sum = top[0][i];
+        for r in 1..N {
+            sum += mirror[r] * top[r][i];
+        }
+        top[0][i] -= beta * sum;
+        for r in 1..N {
+            top[r][i] -= beta * mirror[r] * sum;
+        }
     }
     for row in &mut h[rows] {
-        let [a, b, c] = &mut row[k..k + 3] else { return };
-        let sum = *a + v * *b + w * *c;
-        *a -= beta * sum;
-        *b -= beta_v * sum;
-        *c -= beta_w * sum;
-    }
-}
-
-/// The same for the last two.
-fn reflect_last(h: &mut Square, k: usize, vector: [f64; 2], columns: Range<usize>, rows: Range<usize>) {
-    let [x, y] = vector;
-    let norm = sqrt(x * x + y * y);
-    if !(norm > 0.0) {
-        return;
-    }
-    let norm = if x < 0.0 { -norm } else { norm };
-    let (v, beta) = (y / (x + norm), (x + norm) / norm);
-    let beta_v = beta * v;
-    let [a, b] = &mut h[k..k + 2] else { return };
-    for (a, b) in a[columns.clone()].iter_mut().zip(&mut b[columns]) {
-        let sum = *a + v * *b;
-        *a -= beta * sum;
-        *b -= beta_v * sum;
-    }
-    for row in &mut h[rows] {
-        let sum = row[k] + v * row[k + 1];
-        row[k] -= beta * sum;
-        row[k + 1] -= beta_v * sum;
+        let Some(row) = row[k..].first_chunk_mut::<N>() else { return };
+        let mut sum = row[0];
+        for r in 1..N {
+            sum += mirror[r] * row[r];
+        }
+        row[0] -= beta * sum;
+        for r in 1..N {
+            row[r] -= beta * mirror[r] * sum;
+        }
     }
 }
 

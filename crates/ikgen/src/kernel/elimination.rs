@@ -381,14 +381,14 @@ impl View {
         (sum(self.centre, [(c * c - s * s) / square, 2.0 * c * s / square]), square)
     }
 
-    /// The determinant at `u`, as a trigonometric polynomial of this degree.
-    pub fn value(&self, six: &Six, degree: usize, u: f64) -> f64 {
+    /// The determinant at `u`, as a trigonometric polynomial of this degree, and the magnitude of its smallest pivot.
+    pub fn value(&self, six: &Six, degree: usize, u: f64) -> (f64, f64) {
         let (turn, square) = self.turn(u);
-        let (mut value, _) = determinant(six, turn);
+        let (mut value, least) = determinant(six, turn);
         for _ in 0..degree {
             value *= square;
         }
-        value
+        (value, least)
     }
 
     /// Samples of that at equal steps of `u`, as many as its degree asks for, and the largest of the smallest pivots.
@@ -397,12 +397,8 @@ impl View {
         let n = 2 * degree + 1;
         let mut clear = 0.0f64;
         for (i, x) in samples.iter_mut().enumerate().take(n) {
-            let (turn, square) = self.turn(core::f64::consts::TAU * i as f64 / n as f64);
-            let (value, least) = determinant(six, turn);
+            let (value, least) = self.value(six, degree, core::f64::consts::TAU * i as f64 / n as f64);
             *x = value;
-            for _ in 0..degree {
-                *x *= square;
-            }
             clear = clear.max(least);
         }
         (samples, clear)

@@ -8,10 +8,10 @@ use super::vector::{Vector, cross, dot, minus, times, unit};
 use super::waves::Waves;
 
 /// A pivot that is smaller than this part of the first one counts as zero.
-const NOTHING: f64 = 1e-6;
+pub const NOTHING: f64 = 1e-6;
 
 /// A pivot that is larger than this part is clear of zero.
-const NEARLY_NOTHING: f64 = 1e-3;
+pub const NEARLY_NOTHING: f64 = 1e-3;
 
 /// Below the square of this angle, about, two third angles are one.
 const SHARED: f64 = 1e-8;
@@ -30,7 +30,7 @@ pub fn refined(six: &Six, waves: &Waves, view: &View, start: f64) -> f64 {
         if q == start && doubt < 1e-13 {
             break;
         }
-        let change = -view.value(six, waves.degree, q) / slope;
+        let change = -view.value(six, waves.degree, q).0 / slope;
         if !(change.abs() < 0.05) {
             break;
         }
@@ -100,14 +100,19 @@ fn halves(v: &[f64; 6]) -> (Vector, Vector) {
     ([v[0], v[1], v[2]], [v[3], v[4], v[5]])
 }
 
+/// The turn of which this is a multiple of `1, c, s`.
+fn turn_of(y: Vector) -> Option<[f64; 2]> {
+    let sign = if y[0] < 0.0 { -1.0 } else { 1.0 };
+    unit(sign * y[1], sign * y[2], 0.0)
+}
+
 /// The pair at a simple root.
 pub fn single(six: &Six, turn: [f64; 2]) -> Option<Pair> {
     let (vectors, _) = null_space(six, turn, 1, NOTHING);
     let (high, low) = halves(&vectors[0]);
     let (h, l, hl) = (dot(high, high), dot(low, low), dot(high, low));
     let (half, y) = if h > l { (unit(hl, h, 0.0)?, high) } else { (unit(l, hl, 0.0)?, low) };
-    let sign = if y[0] < 0.0 { -1.0 } else { 1.0 };
-    Some([turn_of_half(half), unit(sign * y[1], sign * y[2], 0.0)?])
+    Some([turn_of_half(half), turn_of(y)?])
 }
 
 /// Whether only one null vector is anywhere near: of two solutions that share the angle there are two.
@@ -118,18 +123,10 @@ pub fn is_alone(six: &Six, turn: [f64; 2]) -> bool {
 /// The pairs at a root where several solutions share the angle: as many null vectors as there are solutions, mixed. Multiplication
 /// by `t` maps their space to itself, and its eigenvalues are the values of `t`.
 ///
-/// Returns the dimension of the null space; a space of one dimension gives no pairs.
-pub fn several(six: &Six, turn: [f64; 2], found: impl FnMut(Pair)) -> usize {
-    mixed(six, turn, NOTHING, found)
-}
-
-/// As [`several`] where the root is known to few digits, so that what should vanish may not quite: the pairs may be none of solutions.
-pub fn nearly_several(six: &Six, turn: [f64; 2], found: impl FnMut(Pair)) -> usize {
-    mixed(six, turn, NEARLY_NOTHING, found)
-}
-
-/// The pairs of a null space whose pivots are below the part `nothing` of the first one, and its dimension.
-fn mixed(six: &Six, turn: [f64; 2], nothing: f64, mut found: impl FnMut(Pair)) -> usize {
+/// Pivots below the part `nothing` of the first one count as zero: [`NOTHING`], or where the root is known to few digits
+/// [`NEARLY_NOTHING`]; the pairs may then be none of solutions. Returns the dimension of the null space; a space of one dimension gives
+/// no pairs.
+pub fn several(six: &Six, turn: [f64; 2], nothing: f64, mut found: impl FnMut(Pair)) -> usize {
     let (vectors, n) = null_space(six, turn, 3, nothing);
     if n < 2 {
         return n;
@@ -150,8 +147,7 @@ fn mixed(six: &Six, turn: [f64; 2], nothing: f64, mut found: impl FnMut(Pair)) -
                 form = next;
             }
         }
-        let sign = if y[0] < 0.0 { -1.0 } else { 1.0 };
-        if let Some(other) = unit(sign * y[1], sign * y[2], 0.0) {
+        if let Some(other) = turn_of(y) {
             halves_of(form, |half| found([turn_of_half(half), other]));
         }
     }
@@ -290,8 +286,7 @@ fn third(forms: &[Vector; 6], mut found: impl FnMut([f64; 2])) {
         }
     }
     if dot(y, y) > 1e-10 * dot(first, first) * dot(first, first) {
-        let sign = if y[0] < 0.0 { -1.0 } else { 1.0 };
-        if let Some(turn) = unit(sign * y[1], sign * y[2], 0.0) {
+        if let Some(turn) = turn_of(y) {
             found(turn);
         }
     } else {

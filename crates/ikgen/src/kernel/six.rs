@@ -18,7 +18,7 @@
 use super::eigen::MAX_SIZE;
 use super::elimination::{Six, View, eliminate};
 use super::math::{cos_sin, sqrt};
-use super::null::{Pair, is_alone, refined, several, single};
+use super::null::{NOTHING, Pair, is_alone, refined, several, single};
 use super::vector::{Line, Motion, Vector, back, cross, dot, minus, plus, times, unit};
 use super::waves::{MAX_DEGREE, Root, Waves};
 
@@ -113,9 +113,6 @@ pub const APART: f64 = 3e-3;
 /// As far rounding parts a double root. Roots that are farther apart, but not clearly, ask for another order.
 const MERGED: f64 = 1e-5;
 
-/// A candidate is one only if its loop closes to this part of its size, and to this angle.
-const OPEN: f64 = 1.0;
-
 /// How far the goals are at which solutions are looked for that fall together, in the first order that is sound and in the second.
 const BESIDE: [f64; 2] = [1e-2, -1e-3];
 
@@ -192,11 +189,11 @@ pub fn close(loop_: &Arranged, middle: [[f64; 2]; 3]) -> Option<[[f64; 2]; 3]> {
     let q2 = unit(cr * ss - sr * cs, sr * cc - cr * cs, 0.0)?;
     let moved = [plus(lines[1].turned(p, q2), step), lines[1].turned(l, q2)];
     let q1 = align(h1, moved, [g, m])?;
-    // Near roots that are no solutions, or of many that fall together, the loop does not close.
+    // Near roots that are no solutions, or of many that fall together, the loop misses by its own size.
     let [at, along] = moved.map(|v| lines[0].turned(v, q1));
     let (gap, lean) = (minus(at, g), minus(along, m));
     let size = dot(g, g) + dot(p, p) + dot(step, step);
-    if !(dot(gap, gap) <= OPEN * OPEN * size && dot(lean, lean) <= OPEN * OPEN) {
+    if !(dot(gap, gap) <= size && dot(lean, lean) <= 1.0) {
         return None;
     }
     // A vector that is not along the last axis shows how far that has turned.
@@ -344,7 +341,7 @@ impl Flats {
             let rise = waves.rise(angle, NEARLY_REAL);
             let mut low = rise < FLAT * waves.largest;
             if !low && rise < FAINT * waves.largest {
-                let miss = view.value(six, order.degree, angle) - waves.at(angle)[0];
+                let miss = view.value(six, order.degree, angle).0 - waves.at(angle)[0];
                 low = miss.abs() > OFF * rise;
             }
             if low {
@@ -448,7 +445,7 @@ fn look(
                 done[j] |= near[j] && flats.holds[j];
             }
             let (turn, _) = view.turn(mean);
-            if several(six, turn, |pair| add(turn, pair)) < 2
+            if several(six, turn, NOTHING, |pair| add(turn, pair)) < 2
                 && let Some(pair) = single(six, turn)
             {
                 add(turn, pair);
@@ -460,7 +457,7 @@ fn look(
         let [extremum, value, bend] = waves.extremum(mean);
         let fold = together == 2 && !order.squared && slack == 0.0;
         // The determinant itself tells how far its waves are off.
-        let exact = if fold { view.value(six, order.degree, extremum) } else { value };
+        let exact = if fold { view.value(six, order.degree, extremum).0 } else { value };
         let off = (exact - value).abs() + FLAT * waves.largest;
         if together == 1 || fold && imaginary == 0.0 && exact.abs() > off {
             starts[0] = refined(six, &waves, view, angle);
@@ -469,7 +466,7 @@ fn look(
             done.iter_mut().zip(near).for_each(|(done, near)| *done |= near);
             let merged = spread < MERGED || order.squared;
             let (turn, _) = view.turn(mean);
-            let all = several(six, turn, |pair| add(turn, pair)) == together;
+            let all = several(six, turn, NOTHING, |pair| add(turn, pair)) == together;
             apart &= merged && (all || fold && is_alone(six, turn));
             if all && merged {
                 continue;

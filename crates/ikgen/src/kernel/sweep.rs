@@ -9,7 +9,7 @@
 use super::eigen::MAX_SIZE;
 use super::elimination::{Measure, Shadow, Six, determinant, eliminate_still, shadow};
 use super::math::{cos_sin, sqrt};
-use super::null::{Pair, nearly_several, several, single};
+use super::null::{NEARLY_NOTHING, NOTHING, Pair, several, single};
 use super::piece::{Cosines, Piece, cosines};
 use super::six::{APART, Arranged, Candidates, NEARLY_REAL, ORDERS, arrange, close, nudged};
 use super::vector::{Line, Motion, dot, minus, times};
@@ -278,13 +278,14 @@ fn look(
             // Several solutions that share the value, or nearly do.
             let mean = sum / together as f64;
             let (arranged, six, _) = ordered.eliminated(mean);
-            let all = several(&six, STILL, |pair| add(&arranged, pair, mean, turns, found)) == together;
+            let all =
+                several(&six, STILL, NOTHING, |pair| add(&arranged, pair, mean, turns, found)) == together;
             if all {
                 done.iter_mut().zip(near).for_each(|(done, near)| *done |= near);
                 continue;
             }
             // The middle of roots that others are near is good to few digits.
-            nearly_several(&six, STILL, |pair| add(&arranged, pair, mean, turns, found));
+            several(&six, STILL, NEARLY_NOTHING, |pair| add(&arranged, pair, mean, turns, found));
             apart = false;
         }
         let x = if together == 1 && imaginary == 0.0 { refined(ordered, piece, x) } else { x };

@@ -1,7 +1,7 @@
 //! Real roots of trigonometric polynomials, as eigenvalues.
 
 use super::eigen::{MAX_SIZE, Square, hessenberg_eigenvalues};
-use super::math::{atan2, cos_sin, sqrt};
+use super::math::{angle_of, cos_sin, sqrt};
 
 /// Highest multiple of the angle.
 pub const MAX_DEGREE: usize = MAX_SIZE / 2;
@@ -154,14 +154,7 @@ impl Waves {
 
     /// Value and derivative.
     pub fn at(&self, angle: f64) -> [f64; 2] {
-        let [c, s] = cos_sin(angle);
-        let (mut x, mut y) = (1.0, 0.0);
-        let (mut value, mut slope) = (self.d[0][0], 0.0);
-        for (k, [real, imaginary]) in self.d.iter().enumerate().take(self.degree + 1).skip(1) {
-            (x, y) = (x * c - y * s, x * s + y * c);
-            value += 2.0 * (real * x - imaginary * y);
-            slope -= 2.0 * k as f64 * (real * y + imaginary * x);
-        }
+        let [value, slope, _] = self.bends(cos_sin(angle));
         [value, slope]
     }
 
@@ -196,8 +189,12 @@ impl Waves {
         let mut values = [[0.0; 2]; MAX_SIZE];
         let count = hessenberg_eigenvalues(&mut companion, size, &mut values);
         for (root, [x, y]) in found.iter_mut().zip(&values[..count]) {
-            // 2 atan(x + i y), its imaginary part to first order: only small ones matter.
-            let angle = self.start + atan2(2.0 * x, 1.0 - x * x - y * y);
+            // 2 atan(x + i y), its imaginary part to first order: only small ones matter. Halves keep digits that their sum has not.
+            let half = |across: f64| {
+                let n = sqrt(x * x + across * across);
+                angle_of(x / n, across / n)
+            };
+            let angle = self.start + (half(1.0 - y) + half(1.0 + y));
             *root = Root { angle, imaginary: 2.0 * y / (1.0 + x * x) };
         }
         count
