@@ -1724,7 +1724,7 @@ static int ik_look_at_piece(const ik_swept *swept, int code, const double *table
     /* Seen from nearby roots are told apart that were one. */
     double together_at = tight < 3e-3 ? tight : 3e-3;
     int count = ik_roots_of_piece(piece, margin, reach > margin ? reach : margin, roots), done[IK_SIZE] = { 0 }, near[IK_SIZE];
-    int apart = 1, together, pairs_found, all, i, j;
+    int apart = 1, together, pairs_found, all, alone, i, j;
     ik_turn still = ik_turn_of(1.0, 0.0), pairs[6][2];
     ik_loop loop;
     ik_six_rows six;
@@ -1773,22 +1773,27 @@ static int ik_look_at_piece(const ik_swept *swept, int code, const double *table
                 sum += roots[j][0];
             }
         }
+        alone = together == 1;
         if (together > 1) {
             /* Several solutions that share the value, or nearly do. */
             mean = sum / (double)together;
+            /* Roots so far from their mean are looked at one by one too: a null space may seem to have as many vectors, and has not. */
+            alone = ik_abs(x - mean) + ik_abs(imaginary) > 3e-4;
             ik_swept_at(swept, mean, code, &loop, &six);
             all = ik_several(&six, still, 1e-6, pairs, &pairs_found) == together;
             for (j = 0; j < pairs_found; j++) ik_add_swept(&loop, pairs[j], mean, swept->turns, found);
-            if (all) {
+            if (all && !alone) {
                 for (j = 0; j < count; j++) done[j] |= near[j];
                 continue;
             }
-            /* The middle of roots that others are near is good to few digits. */
-            ik_several(&six, still, 1e-3, pairs, &pairs_found);
-            for (j = 0; j < pairs_found; j++) ik_add_swept(&loop, pairs[j], mean, swept->turns, found);
-            apart = 0;
+            if (!all) {
+                /* The middle of roots that others are near is good to few digits. */
+                ik_several(&six, still, 1e-3, pairs, &pairs_found);
+                for (j = 0; j < pairs_found; j++) ik_add_swept(&loop, pairs[j], mean, swept->turns, found);
+                apart = 0;
+            }
         }
-        if (together == 1 && !(ik_abs(imaginary) > 0.0)) {
+        if (alone && !(ik_abs(imaginary) > 0.0)) {
             for (j = 0; j < 4; j++) {
                 change = -ik_swept_value(swept, x, code) / ik_slope_of_piece(piece, x);
                 if (!(ik_abs(change) < IK_NEARLY_REAL)) break;

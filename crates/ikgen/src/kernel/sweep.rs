@@ -64,6 +64,10 @@ const ZOOM: f64 = 0.125;
 /// How many times.
 const ZOOMS: usize = 4;
 
+/// Roots farther than this from their mean are looked at one by one too: where little is left of the equations, a null space may seem to
+/// have as many vectors as there are roots, and has not.
+const ONE: f64 = 3e-4;
+
 /// The circle is cut here: off the multiples of 90 degrees.
 const CUT: f64 = 0.2137;
 
@@ -274,21 +278,25 @@ fn look(
                 sum += other;
             }
         }
+        let mut alone = together == 1;
         if together > 1 {
             // Several solutions that share the value, or nearly do.
             let mean = sum / together as f64;
+            alone = (x - mean).abs() + imaginary.abs() > ONE;
             let (arranged, six, _) = ordered.eliminated(mean);
             let all =
                 several(&six, STILL, NOTHING, |pair| add(&arranged, pair, mean, turns, found)) == together;
-            if all {
+            if all && !alone {
                 done.iter_mut().zip(near).for_each(|(done, near)| *done |= near);
                 continue;
             }
-            // The middle of roots that others are near is good to few digits.
-            several(&six, STILL, NEARLY_NOTHING, |pair| add(&arranged, pair, mean, turns, found));
-            apart = false;
+            if !all {
+                // The middle of roots that others are near is good to few digits.
+                several(&six, STILL, NEARLY_NOTHING, |pair| add(&arranged, pair, mean, turns, found));
+                apart = false;
+            }
         }
-        let x = if together == 1 && imaginary == 0.0 { refined(ordered, piece, x) } else { x };
+        let x = if alone && imaginary == 0.0 { refined(ordered, piece, x) } else { x };
         let (arranged, six, _) = ordered.eliminated(x);
         match single(&six, STILL) {
             Some(pair) => add(&arranged, pair, x, turns, found),
