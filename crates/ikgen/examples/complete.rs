@@ -14,6 +14,7 @@ use robotc_ikgen::report::{poses, prove_set};
 use robotc_ikgen::{Options, compile};
 
 mod collection;
+mod processor;
 
 /// Least singular value of the Jacobian where a solution counts as regular.
 const REGULAR: f64 = 1e-4;
@@ -35,9 +36,10 @@ fn main() {
         let clock = Instant::now();
         let now = || clock.elapsed().as_secs_f64();
         for set in poses::sets(&chain, &compiled.free, count, Seed::new(1).split("ikgen proof")) {
-            let start = processor_s();
+            let processor = || processor::seconds().unwrap_or(0.0);
+            let start = processor();
             let report = prove_set(&chain, &solver, &set, &now);
-            let mean = (processor_s() - start) / set.vectors.len().max(1) as f64 * 1e6;
+            let mean = (processor() - start) / set.vectors.len().max(1) as f64 * 1e6;
             let found = completeness(&chain, &solver, &set.vectors, REGULAR);
             println!(
                 "| {name} | {} | {} | {} | {} | {} | {:.0} us | {mean:.0} us |",
@@ -50,10 +52,4 @@ fn main() {
             );
         }
     }
-}
-
-/// Seconds that this thread has had a processor, where the system says so.
-fn processor_s() -> f64 {
-    let times = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    times.split_whitespace().next().and_then(|t| t.parse::<f64>().ok()).unwrap_or(0.0) * 1e-9
 }

@@ -23,6 +23,8 @@ mod arms;
 mod calibrated;
 #[path = "../collection/mod.rs"]
 mod collection;
+#[path = "../processor/mod.rs"]
+mod processor;
 mod types;
 
 use calibrated::Calibrated;
@@ -74,9 +76,9 @@ fn arm(chain: &SerialChain, poses: usize, options: &[String]) -> Report {
     let tolerance = if set("--no-snap") { 0.0 } else { Options::default().tolerance };
     let clock = Instant::now();
     let now = || clock.elapsed().as_secs_f64();
-    let start = processor_s().unwrap_or_else(now);
+    let start = processor::seconds().unwrap_or_else(now);
     let result = compile(chain, &Options { tolerance, ..Options::default() });
-    let seconds = processor_s().unwrap_or_else(now) - start;
+    let seconds = processor::seconds().unwrap_or_else(now) - start;
     let (report, trace, program) = match &result {
         Err(refusal) => {
             (Report::refused(refusal, GoalType::default(), seconds), &refusal.trace, String::new())
@@ -100,12 +102,6 @@ fn arm(chain: &SerialChain, poses: usize, options: &[String]) -> Report {
         println!("{program}");
     }
     report
-}
-
-/// Seconds that this thread has had a processor, where the system says so: a machine may be busy with other things.
-fn processor_s() -> Option<f64> {
-    let times = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    Some(times.split_whitespace().next()?.parse::<f64>().ok()? * 1e-9)
 }
 
 fn summary(arms: &[(String, Report)], poses: usize) {

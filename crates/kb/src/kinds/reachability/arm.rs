@@ -217,14 +217,11 @@ impl ArmAlone {
             fits.then(|| joints.clone())
         };
         let mut found = None;
-        let poses = [*base_from_tip; TOGETHER];
         let (mut at, middle) = (0, free.len() / 2);
         // Care would find again what is not lost at first sight.
         let mut care = !free.is_empty();
         while free.width() > 0 && found.is_none() && at < free.len() {
-            let count = TOGETHER.min(free.len() - at);
-            let rows: Vec<f64> = (at..at + count).flat_map(|i| free.row(i)).copied().collect();
-            self.solver.solve_batch_once(&poses[..count], &rows, &mut batch);
+            let count = self.solve_from(at, base_from_tip, free, &mut batch);
             found = (0..count).find_map(|i| batch.solutions(i).find_map(|solution| fits(solution, scratch)));
             care &= !(at..at + count).contains(&middle) || batch.solutions(middle - at).len() == 0;
             at += count;
@@ -237,6 +234,14 @@ impl ArmAlone {
         found
     }
 
+    /// Solves a tip pose for a few values of the free joints, from the one at `at` on; how many they are.
+    fn solve_from(&self, at: usize, base_from_tip: &Pose, free: &FreeValues, batch: &mut Batch) -> usize {
+        let count = TOGETHER.min(free.len() - at);
+        let rows: Vec<f64> = (at..at + count).flat_map(|i| free.row(i)).copied().collect();
+        self.solver.solve_batch_once(&[*base_from_tip; TOGETHER][..count], &rows, batch);
+        count
+    }
+
     /// Joint vectors within limits that reach a tip pose, for these values of the free joints, a few of them at a time: each group is
     /// given to `enough`, until that says so. Nothing is looked at for self-collisions.
     pub fn reach_in_groups(
@@ -246,12 +251,9 @@ impl ArmAlone {
         scratch: &mut Scratch,
         mut enough: impl FnMut(&[Vec<f64>]) -> bool,
     ) {
-        let poses = [*base_from_tip; TOGETHER];
         let mut at = 0;
         while at < free.len() {
-            let count = TOGETHER.min(free.len() - at);
-            let rows: Vec<f64> = (at..at + count).flat_map(|i| free.row(i)).copied().collect();
-            self.solver.solve_batch_once(&poses[..count], &rows, &mut scratch.batch);
+            let count = self.solve_from(at, base_from_tip, free, &mut scratch.batch);
             let mut group = Vec::new();
             for solution in (0..count).flat_map(|i| scratch.batch.solutions(i)) {
                 if self.within_limits(solution, 0, &mut scratch.joints) {
