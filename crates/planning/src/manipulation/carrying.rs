@@ -130,14 +130,8 @@ fn carry_off(
     let mut last = GoalFailure::new(cx.object_name(), Stage::Carry);
     last.message = "no place to stand was found".into();
     for tried in 0..PLACES {
-        let base = match places.next_base(budget) {
-            Ok(Some(base)) => base,
-            Ok(None) => break,
-            Err(interrupt) => {
-                last.interrupt = Some(interrupt);
-                return Err(last);
-            }
-        };
+        let drawn = places.next_base(budget).map_err(|interrupt| last.interrupted(interrupt))?;
+        let Some(base) = drawn else { break };
         let (seed, rules) = (seed.split("place").at(tried), cx.free(Some(grip.clone())));
         let Some(path) = drive_to(cx, scene, drive, &folded, &base, rules, budget, seed) else {
             last.message = "no way to drive to where it can be put down from".into();

@@ -122,14 +122,8 @@ pub(super) fn plan_driving(
                 if stage > 1 || tried == most {
                     break;
                 }
-                let base = match places.next_base(budget) {
-                    Ok(Some(base)) => base,
-                    Ok(None) => break,
-                    Err(interrupt) => {
-                        last.interrupt = Some(interrupt);
-                        return Err(last);
-                    }
-                };
+                let drawn = places.next_base(budget).map_err(|interrupt| last.interrupted(interrupt))?;
+                let Some(base) = drawn else { break };
                 tried += 1;
                 let seed = seed.split("place").at(tried);
                 let rules = cx.free(None);

@@ -333,6 +333,11 @@ impl GoalFailure {
             nearest: None,
         })
     }
+
+    /// The same, ended by an interrupt.
+    pub(super) fn interrupted(&self, interrupt: Interrupt) -> Box<Self> {
+        Box::new(Self { interrupt: Some(interrupt), ..self.clone() })
+    }
 }
 
 impl fmt::Display for GoalFailure {
